@@ -12,18 +12,30 @@ BENCH_CFLAGS ?= -O3 -march=native
 
 headers = gxfem.h gxfem_boolean.h gxfem_integrate.h gxfem_solve.h
 # The largest first, since they take longest. Those of which a part runs again, test_tight and test_tight_boolean, are short to read only.
-tests = $(patsubst tests/%.c,%,$(wildcard tests/test_tight*.c) $(shell ls -S tests/test_*.c | grep -v test_tight))
+tests := $(patsubst tests/%.c,%,$(wildcard tests/test_tight*.c) $(shell ls -S tests/test_*.c | grep -v test_tight))
+# Compiling a header takes most of a test's time. So those tests that begin with the implementation of a header are compiled together:
+# two programs for gxfem.h, one for each of two others. Each still has a program of its own, for one who works on it.
+hash := \#
+beginning = $(shell awk '/^$(hash)/ { n = ++lines[FILENAME] } n == 1 && /^$(hash)define GXFEM/ { first = FILENAME } \
+    n == 2 && first == FILENAME && $$0 == "$(hash)include \"../$1\"" { print FILENAME; first = "" }' $(tests:%=tests/%.c))
+of_gxfem := $(filter-out tests/test_baselines.c,$(call beginning,gxfem.h))
+members_1 := $(shell printf '%s\n' $(of_gxfem) | awk 'NR % 2')
+members_2 := $(filter-out $(members_1),$(of_gxfem))
+members_solve := $(call beginning,gxfem_solve.h)
+members_boolean := $(call beginning,gxfem_boolean.h)
+together := $(foreach group,1 2 solve boolean,$(if $(members_$(group)),together_$(group)))
+programs := $(together) $(filter-out $(patsubst tests/%.c,%,$(of_gxfem) $(members_solve) $(members_boolean)),$(tests))
 linked_tests = $(patsubst tests/%.c,%,$(shell grep -l GXFEM_LINKED tests/test_*.c))
 examples = $(patsubst examples/%.c,%,$(sort $(wildcard examples/*.c)))
 scenes = $(filter-out embed gxcut gxboolean animation,$(examples))
 linked_examples = $(filter-out embed,$(examples))
 compile = $(CC) -std=c99 -g $(WARNINGS) $(CFLAGS)
 linked = $(compile) -DGXFEM_LINKED
-# Compiling takes most of these tests' time: only what runs long is optimised, and nothing is inlined.
-sanitizers = -O1 -fno-inline $(unoptimised_sanitizers)
-unoptimised_sanitizers = -g1 -fsanitize=address,undefined -fno-sanitize-recover=all
-long_tests = test_tight test_forces test_solve test_surface_boolean test_boolean test_steps test_save test_blade test_memory test_settle \
-    test_affine test_updates test_oracle test_near test_sheets test_shapes test_touch
+# No frame of the library is larger than 16 kB; a sanitizer's are.
+small_frames = $(if $(findstring sanitize,$(CFLAGS)),,$(if $(findstring clang,$(CC)),-Wframe-larger-than=16384 \
+    -Werror=frame-larger-than,-Werror=frame-larger-than=16384))
+# Nothing is inlined, as compiling takes most of the tests' time.
+sanitizers = -O1 -fno-inline -g1 -fsanitize=address,undefined -fno-sanitize-recover=all
 
 help:
 	@echo "make demo        cuts a cube of 5 tetrahedra into 36 sticks, simulates it, writes a page that plays it (needs a C compiler only)"
@@ -55,6 +67,7 @@ help:
 	@echo "  stepping       error of the motion against time, over all settings; other methods"
 	@echo "  front          time to reach an error beside local solvers that games use, XPBD and VBD, by size and stiffness"
 	@echo "  space          the same cuts under refinement beside conforming meshes: locking of thin slices"
+	@echo "  thin           slices thinner than their elements, with affine copies and without: how far they bend, iterations, time"
 	@echo "  table2         scenes of GXFEM's Table 2 by RXFEM, virtual nodes and the literal Algorithm 1 too"
 	@echo "  conditioning   RXFEM's Fig. 14, and a corner piece"
 	@echo "  failure        hard cases: which method is right, wrong, refuses, diverges, crashes"
@@ -98,7 +111,7 @@ $(linked_examples:%=$(BUILD)/%): $(BUILD)/%: examples/%.c $(BUILD)/gxfem.o $(hea
 
 $(BUILD)/gxfem.o: $(headers)
 	@mkdir -p $(@D)
-	printf '#define GXFEM_IMPLEMENTATION\n#include "gxfem.h"\n' | $(compile) -I. -x c -c - -o $@
+	printf '#define GXFEM_IMPLEMENTATION\n#include "gxfem.h"\n' | $(compile) $(small_frames) -I. -x c -c - -o $@
 
 # The page that plays frames, as C. It is committed, so that examples need nothing but a C compiler.
 examples/player.h: examples/player.html examples/player.css examples/player.js examples/player.sh
@@ -142,8 +155,8 @@ $(BUILD)/web/player.css $(BUILD)/web/player.js: $(BUILD)/web/%: examples/%
 
 # From clang 16 on vectors are right (gxfem_boolean.h): a step then takes half the time.
 newest_clang = $(shell for c in clang-21 clang-20 clang-19 clang-18 clang-17 clang-16 clang; do command -v $$c >/dev/null && echo $$c && break; done)
-web_clang = $(or $(CLANG),$(newest_clang)) --target=wasm32-wasi --sysroot=$(or $(SYSROOT),/usr) -std=c99 -O2 $(WARNINGS) -I. -mexec-model=reactor
-web_link = -Wl,-z,stack-size=262144 -Wl,--stack-first -Wl,--strip-all -lm
+web_clang = $(or $(CLANG),$(newest_clang)) --target=wasm32-wasi --sysroot=$(or $(SYSROOT),/usr) -std=c99 -Os $(WARNINGS) -I. -mexec-model=reactor
+web_link = -Wl,-z,stack-size=65536 -Wl,--stack-first -Wl,--strip-all -lm
 $(BUILD)/web/jelly.wasm: web_vectors =
 $(BUILD)/web/jelly-simd.wasm: web_vectors = -msimd128
 $(BUILD)/web/jelly.wasm $(BUILD)/web/jelly-simd.wasm: examples/web/jelly.c examples/gxshape.h $(headers)
@@ -198,7 +211,7 @@ check:
 	@sh tests/install.sh check
 	@$(MAKE) --no-print-directory -k -j$(JOBS) check-programs
 
-check-programs: $(tests:%=run-%) run-gxcut run-gxboolean run-corpus
+check-programs: $(programs:%=run-%) run-gxcut run-gxboolean run-corpus
 
 run-gxcut run-gxboolean: run-%: $(BUILD)/%
 	@sh tests/test_$*.sh $(BUILD)/$*
@@ -208,13 +221,22 @@ run-corpus: $(BUILD)/fuzz/fuzz $(BUILD)/fuzz_blade/fuzz
 	@$(BUILD)/fuzz/fuzz tests/corpus/*
 	@$(BUILD)/fuzz_blade/fuzz tests/corpus_blade/*
 
-$(tests:%=run-%): run-%: $(BUILD)/tests/%
+$(sort $(programs:%=run-%) $(tests:%=run-%)): run-%: $(BUILD)/tests/%
 	@$< >$<.log 2>&1; code=$$?; cat $<.log; exit $$code
 
 # GXFEM_STATIC leaves out what a test does not call: compiling takes most of the tests' time.
 $(BUILD)/tests/%: tests/%.c $(headers) $(wildcard tests/*.h examples/*.h bench/*.h)
 	@mkdir -p $(@D)
 	$(compile) -DGXFEM_STATIC -Itests $(shell pkg-config --cflags check) $< -o $@ $(LDFLAGS) $(shell pkg-config --libs check) -lm
+
+$(BUILD)/tests/together_%.c: FORCE
+	@mkdir -p $(@D)
+	@awk -f tests/together.awk $(members_$*) >$@.new
+	@if cmp -s $@.new $@; then rm $@.new; else mv $@.new $@; fi
+
+# Without inlining, clang 14 reports temporary structs of exact numbers as used out of their scope.
+$(together:%=$(BUILD)/tests/%): %: %.c $(headers) $(wildcard tests/*.c tests/*.h examples/*.h bench/*.h)
+	$(compile) $(if $(findstring sanitize,$(CFLAGS)),-fno-sanitize-address-use-after-scope) -DGXFEM_STATIC -I. -Itests $(shell pkg-config --cflags check) $< -o $@ $(LDFLAGS) $(shell pkg-config --libs check) -lm
 
 # Tests that need only the interface contain GXFEM_LINKED. They share the object of the examples.
 $(linked_tests:%=$(BUILD)/tests/%): $(BUILD)/tests/%: tests/%.c $(BUILD)/gxfem.o $(headers) $(wildcard tests/*.h examples/*.h bench/*.h)
@@ -227,19 +249,16 @@ $(BUILD)/tests/test_tight_boolean: tests/test_surface_boolean.c
 # The recipes' test includes the snippets of the page.
 $(BUILD)/tests/test_recipes: $(BUILD)/recipes.h
 $(BUILD)/tests/test_recipes: compile += -I$(BUILD) -DRECIPES_FOLDER='"$(BUILD)"' -pthread
+$(BUILD)/tests/test_stack: compile += -pthread
 $(BUILD)/recipes.h: docs/RECIPES.md tests/recipes.awk
 	@mkdir -p $(@D)
 	awk -f tests/recipes.awk $< >$@
 
-# All tests except those of the benches' baselines. Under -fno-inline, clang 14 reports temporary structs of tests with exact numbers as
-# used out of their scope; the short tests are not compiled so.
+# All tests except those of the benches' baselines
 sanitize:
 	@sh tests/install.sh check
-	@export CK_TIMEOUT_MULTIPLIER=10; code=0; \
-	$(MAKE) --no-print-directory -k -j$(JOBS) check-programs BUILD=$(BUILD)/sanitize CFLAGS="$(sanitizers)" tests="$(long_tests)" || code=1; \
-	$(MAKE) --no-print-directory -k -j$(JOBS) $(patsubst %,run-%,$(filter-out test_baselines $(long_tests),$(tests))) \
-	    BUILD=$(BUILD)/sanitize CFLAGS="$(unoptimised_sanitizers)" || code=1; \
-	exit $$code
+	@CK_TIMEOUT_MULTIPLIER=10 $(MAKE) --no-print-directory -k -j$(JOBS) check-programs BUILD=$(BUILD)/sanitize CFLAGS="$(sanitizers)" \
+	    tests="$(filter-out test_baselines,$(tests))"
 
 # Every cut compacts, but for complexes of which a test wants to know the numbers later.
 settles = -O1 '-DGXBP_IS_SPARSE(sparse)=((sparse)||cx->settled<UINT64_MAX/8)'
@@ -353,7 +372,7 @@ check-wasm:
 
 # ---- benches. Only their CSV goes to stdout. BENCH=--small: smaller ones, with a folder of their own for tables and charts
 
-benches = quadrature stepping front space table2 conditioning failure scaling kernel open smallest solver violent accuracy drift frames skin blade strokes soak
+benches = quadrature stepping front space thin table2 conditioning failure scaling kernel open smallest solver violent accuracy drift frames skin blade strokes soak
 small = $(filter --small,$(BENCH))
 tables = $(BUILD)/bench$(if $(small),/small)
 # The compiler's own default: with -std=c99 gcc fuses no multiplications with additions, whatever -march says.
@@ -367,7 +386,7 @@ $(filter-out %/solver,$(bench_programs)): $(BUILD)/bench/%: bench/%.c $(wildcard
 	@mkdir -p $(@D)
 	@$(CC) $(bench_standard) $(WARNINGS) $(BENCH_CFLAGS) -pthread $< -o $@ $(LDFLAGS) -lm
 
-$(BUILD)/bench/space $(BUILD)/bench/scaling $(BUILD)/bench/open: examples/gxio.h examples/gxjson.h
+$(BUILD)/bench/space $(BUILD)/bench/thin $(BUILD)/bench/scaling $(BUILD)/bench/open: examples/gxio.h examples/gxjson.h
 $(BUILD)/bench/kernel: tests/workloads.h tests/oracle.h tests/rational.h
 
 $(BUILD)/bench/solver: bench/solver.c $(wildcard bench/*.h) $(headers)
@@ -463,4 +482,4 @@ check-all: check
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: help web check-web lib bindings check-bindings examples demo check-page scenes pictures animation bench-programs check check-programs run-gxcut run-gxboolean run-corpus $(tests:%=run-%) sanitize sanitize-scenes check-settled compile amalgam check-amalgam install check-package coverage formatted lint format fuzz fuzz-blade flags hashes platforms check-wasm $(benches:%=bench-%) bench charts check-all clean
+.PHONY: help web check-web lib bindings check-bindings examples demo check-page scenes pictures animation bench-programs check check-programs run-gxcut run-gxboolean run-corpus $(sort $(programs:%=run-%) $(tests:%=run-%)) FORCE sanitize sanitize-scenes check-settled compile amalgam check-amalgam install check-package coverage formatted lint format fuzz fuzz-blade flags hashes platforms check-wasm $(benches:%=bench-%) bench charts check-all clean

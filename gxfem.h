@@ -60,7 +60,8 @@
  *     the skin:                  >>corners >>vertices >>faces >>skinning
  *     points and rays:           >>tree >>locate >>nearest >>hits >>rays
  *     a step, with contact:      >>touch >>colliders >>meeting >>pressing >>telling >>step
- *     a blade in space:          >>layers >>edges >>fronts >>glances >>strokes >>ways >>blade >>contacts >>carve
+ *     a blade in space:          >>layers >>edges >>relations >>fronts >>glances >>strokes >>ways >>blade
+ *                                >>contacts >>carve
  *     beginning, end, bytes:     >>grid >>create >>hashes >>stream >>scabbard >>save
  *
  * Words. Facet: a polygon inside an element or in an element face, made by cuts. Wall: a facet that a sheet covers.
@@ -81,6 +82,8 @@
  * 2^-700 ... 2^700. So all volumes, masses, centres and inertia are finite, those of whole bodies are normal numbers,
  * and floats hold the skin. Divided by the body's size, coordinates of bodies and cuts are 0 or 2^-128 ... 2^128 in
  * absolute value (GX_ERROR_RANGE). One thread at a time may use a body. There is no global state, no output, no clock.
+ * A call takes less than 48 kB of stack, besides that of the caller's own functions. gx_body_load takes more where one
+ * edge, face or element was divided over and over: 50 bytes for each time in a row.
  *
  * References: GXFEM = Ton-That, Kry, Andrews: Generalized eXtended Finite Element Method for Deformable Cutting via
  * Boolean Operations (2024). RXFEM = Koschier, Bender, Thuerey: Robust eXtended Finite Elements for Complex Cutting of
@@ -251,7 +254,7 @@ typedef struct gx_body_desc {
     /* In thicknesses of elements, 0 ... 1000. Where material is thinner, its copies carry an affine motion each (are
        affine), so that sheets bend as they should. Creation and cuts find it, the latter among what they touch; an
        affine copy stays so. A layer of cubes of five or six elements has a thickness of 0.94; 1 is a good value.
-       0: none, at no cost. Other values: no gx_body_contact and no pairs yet */
+       0: none, at no cost. Other values: pairs of a step need their anchors (gx_step_desc.pair_anchors) */
     double affine_below;
     gx_allocator allocator;      /* zero: malloc, free, realloc */
     double (*clock)(void *user); /* seconds, for the reports' timings and the steps' budgets; NULL: timings are 0 */
@@ -518,7 +521,7 @@ typedef struct gx_step_desc {
     gxs_integrator integrator;
     uint32_t substeps;          /* GXS_EXPLICIT only: that many of dt; 0: as few as are cheap */
     uint32_t quick;             /* above 0: quick steps of so many iterations, 2 or 3, say (see gxs_step_desc) */
-    uint32_t newton_iterations; /* at most; 0: 1 */
+    uint32_t newton_iterations; /* at most; 0: 1, but as many as thin sheets need where copies are affine */
     double newton_tolerance;    /* stop at this residual (see gxs_step_report); 0: 1e-8 */
     uint32_t cg_iterations;     /* per Newton iteration, at most; 0: 1000 */
     double cg_tolerance;        /* reduction by each linear solve, below 1; 0: 1e-2; 1e-3 with GXS_MIDPOINT */
@@ -579,8 +582,9 @@ typedef gxs_step_report gx_step_report;
    as its element.
    Affine copies neither follow nor lead, but those of a fragment that moves as a point do. A point with affine copies
    is moved as the material at its position at rest is. forces act on displacements alone, anchor_forces on A too;
-   targets leave A as it is, poses turn it. Thin sheets that are flung need two or three Newton iterations in steps of
-   games: one lags. Pairs are refused where copies are affine. A cut of such a body makes its model anew.
+   targets leave A as it is, poses turn it. Thin sheets that are flung turn far in a step, and one Newton iteration lags
+   by half of the motion: newton_iterations 0 then takes two to forty, until the motion is within 5 %. Pairs without
+   anchors are refused where copies are affine.
    failure.index: a spring, point, plane, pair, anchor, region or copy. The fields "displacement" and "velocity" are
    those of gx_view. Errors: ARGUMENT, NOT_FINITE, INDEX, LIMIT, MEMORY, STALE (copies of another epoch), RANGE (a
    number is too large or too small; as for FLAT, an element if field is NULL), FLAT (an element, see gx_body_model),
@@ -616,7 +620,7 @@ typedef struct gx_contact_desc {
 } gx_contact_desc;
 /* Switches contact on for later steps, or off (NULL). It forgets the slips of friction. Steps with contact refuse
    GXS_MIDPOINT ("integrator") and "quality". Contact is saved, cloned and restored with what presses and sticks.
-   Errors: ARGUMENT (also: gx_body_desc.affine_below is not 0), NOT_FINITE. */
+   Errors: ARGUMENT, NOT_FINITE. */
 GXFEM_API gx_result gx_body_contact(gx_body *body, const gx_contact_desc *desc /* or NULL: off */,
                                     gx_failure *failure /* or NULL */);
 
@@ -925,14 +929,21 @@ extern "C" {
 #pragma clang attribute push(__attribute__((target("no-simd128"))), apply_to = function)
 #endif
 
-/* COLD functions are seldom called: kept out of line and compiled for size. */
+/* COLD functions are seldom called: kept out of line and compiled for size. APART: out of line, so that their arrays
+   are not in the frame of what calls them. */
 #if defined(__GNUC__) || defined(__clang__)
 #define GXP_COLD              __attribute__((cold, noinline))
+#define GXP_APART             __attribute__((noinline))
 #define GXP_PREFETCH(address) __builtin_prefetch(address)
 #define GXP_PREFETCHES                                                                                                 \
     static inline __attribute__((always_inline)) /* without it gcc takes such a function for pure and drops calls */
 #else
 #define GXP_COLD
+#if defined(_MSC_VER)
+#define GXP_APART __declspec(noinline)
+#else
+#define GXP_APART
+#endif
 #define GXP_PREFETCH(address) ((void)(address))
 #define GXP_PREFETCHES        static inline
 #endif
@@ -1194,8 +1205,9 @@ typedef struct gxp_snapshot {
 typedef struct gxp_hidden {
     gxp_words copies; /* affine copies of the model, ascending. Those of specks are none: a speck moves as a point */
     gxp_words first;  /* vectors of the model: gxs_model.affine; empty if copies is */
-    uint8_t *held;    /* vectors of the model */
-    uint8_t *plain;   /* by copy, while the model is made: 1: part of a speck */
+    gxp_words before, origins; /* while the model is changed: first of the model before; gxs_change.origins */
+    uint8_t *held;             /* vectors of the model */
+    uint8_t *plain;            /* by copy, while the model is made: 1: part of a speck */
     uint32_t held_capacity, plain_capacity;
     double *state; /* of a step: displacement, velocity, both a step ago, x 3 and by vector, then rest times */
     uint32_t state_capacity;
@@ -1439,6 +1451,7 @@ typedef struct gxp_relation {
     uint8_t ahead;    /* 1: the front advances there */
     uint8_t strays;   /* 1: the edge has left its cut through the side */
     uint8_t doubtful; /* 1: ahead only because the cut's sheet is in the air there */
+    uint8_t beside;   /* 1: in the air, ahead only because it is behind and off the cut's sheet */
 } gxp_relation;
 
 /* A part of a segment of the edge that is in a cell */
@@ -1647,6 +1660,10 @@ typedef struct gxp_boundary {
     gxp_words slots;     /* by point of the complex: its place in points, if it is there */
     gxp_words triangles; /* x 3, places in points */
     gxp_words facets;    /* in faces of the element: 2 x facet, + 1 if the material is in front */
+    gxp_words leaves;    /* that it bounds */
+    gxp_words fixed_of;  /* by place in points: the place in fixed, or GXP_NONE */
+    gxb_fixed *fixed;    /* x 4: coordinates of those points that needed more digits */
+    uint32_t fixed_count, fixed_capacity;
 } gxp_boundary;
 
 typedef struct gxp_scratch {
@@ -1666,7 +1683,12 @@ typedef struct gxp_scratch {
     gxp_keys order;          /* place in the order of insertion, triangle */
     gxp_words near_elements; /* that a triangle may meet */
     /* >>pinches */
-    gxp_words joint_leaves, joint_edges, joint_cells; /* around a node or edge */
+    gxp_words joint_leaves; /* around a node, or of an element */
+    gxp_words joint_edges;  /* parts of edges in which these meet: joints 0, 1, ...; then a node is one */
+    gxp_words joint_walls;  /* by joint: 1 if a wall touches it */
+    gxp_words leaf_joints;  /* on a leaf's boundary */
+    gxp_keys joint_cells;   /* joint, cell; ascending */
+    gxp_keys cell_joints;   /* the same by cell */
     /* >>solids */
     gxp_words seed_leaves; /* where the flood starts */
     gxp_words flooded;     /* leaves whose winding number is known */
@@ -1904,7 +1926,8 @@ static const gxp_column gxp_lists[] = {
     GXP_WORDS(view.indices), GXP_WORDS(view.copy_fragment), GXP_WORDS(view.fragment_number),
     GXP_WORDS(view.splits), GXP_WORDS(view.split_cells), GXP_WORDS(view.split_parents),
     GXP_WORDS(model.changed), GXP_WORDS(model.thin),
-    GXP_WORDS(hidden.copies), GXP_WORDS(hidden.first), GXP_LIST(hidden.held, hidden.held_capacity, 1),
+    GXP_WORDS(hidden.copies), GXP_WORDS(hidden.first), GXP_WORDS(hidden.before), GXP_WORDS(hidden.origins),
+    GXP_LIST(hidden.held, hidden.held_capacity, 1),
     GXP_LIST(hidden.plain, hidden.plain_capacity, 1),
     GXP_LIST(hidden.state, hidden.state_capacity, sizeof(double)), GXP_WORDS(hidden.span_copies),
     GXP_LIST(hidden.span_weights, hidden.span_capacity, sizeof(double)),
@@ -1953,7 +1976,8 @@ static const gxp_column gxp_lists[] = {
     GXP_KEYS(scratch.links), GXP_KEYS(scratch.glue), GXP_KEYS(scratch.seams), GXP_WORDS(scratch.cluster),
     GXP_WORDS(scratch.link_first), GXP_WORDS(scratch.narrow), GXP_WORDS(scratch.dead),
     GXP_KEYS(scratch.order), GXP_WORDS(scratch.near_elements),
-    GXP_WORDS(scratch.joint_leaves), GXP_WORDS(scratch.joint_edges), GXP_WORDS(scratch.joint_cells),
+    GXP_WORDS(scratch.joint_leaves), GXP_WORDS(scratch.joint_edges), GXP_WORDS(scratch.joint_walls),
+    GXP_WORDS(scratch.leaf_joints), GXP_KEYS(scratch.joint_cells), GXP_KEYS(scratch.cell_joints),
     GXP_WORDS(scratch.seed_leaves), GXP_WORDS(scratch.flooded), GXP_WORDS(scratch.seeded), GXP_WORDS(scratch.wound),
     GXP_WORDS(scratch.leaf_points),
     GXP_KEYS(scratch.given_to), GXP_WORDS(scratch.remade), GXP_KEYS(scratch.interfaces),
@@ -1962,8 +1986,9 @@ static const gxp_column gxp_lists[] = {
     GXP_KEYS(scratch.pairs), GXP_WORDS(scratch.subdomains), GXP_WORDS(scratch.subdomain_cells),
     GXP_WORDS(scratch.taken), GXP_WORDS(scratch.face_facets),
     GXP_WORDS(scratch.boundary.points), GXP_WORDS(scratch.boundary.slots), GXP_WORDS(scratch.boundary.triangles),
-    GXP_WORDS(scratch.boundary.facets),
+    GXP_WORDS(scratch.boundary.facets), GXP_WORDS(scratch.boundary.leaves), GXP_WORDS(scratch.boundary.fixed_of),
     GXP_LIST(scratch.boundary.lambdas, scratch.boundary.lambda_capacity, 4 * sizeof(double)),
+    GXP_LIST(scratch.boundary.fixed, scratch.boundary.fixed_capacity, 4 * sizeof(gxb_fixed)),
     GXP_WORDS(scratch.sheet_cells), GXP_WORDS(scratch.bulk_of), GXP_WORDS(scratch.bulk_met), GXP_WORDS(scratch.bent),
     GXP_LIST(scratch.bulks, scratch.bulk_capacity, sizeof(gxp_bulk))};
 /* clang-format on */
@@ -3510,32 +3535,58 @@ static void gxp_find_pinched_edges(gx_body *body) {
         }
 }
 
-/* A point or an edge of the complex in which elements meet; the other of the two is GXB_NONE */
-typedef struct gxp_joint {
-    uint32_t point, edge;
-    int found, walled;
-} gxp_joint;
+/* Where a word is in an ascending list, GXP_NONE: nowhere */
+static uint32_t gxp_place_of(const gxp_words *words, uint32_t value) {
+    uint32_t low = 0, high = words->count;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (words->data[middle] < value)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < words->count && words->data[low] == value ? low : GXP_NONE;
+}
 
-/* Is the joint on the leaf's boundary (found), and does a wall touch it there (walled)? */
-static gx_result gxp_find_leaf_joint(gx_body *body, uint32_t leaf, gxp_joint *joint) {
+/* Makes the edges in scratch.joint_edges joints: the parts of mesh edges in which elements meet, joints 0, 1, ... in
+   ascending order. The joint after them is a node. */
+static gx_result gxp_start_joints(gx_body *body) {
+    gxp_scratch *scratch = &body->scratch;
+    gx_result result;
+    gxp_sort_unique(&scratch->joint_edges);
+    result = gxp_start_words(body, &scratch->joint_walls, (size_t)scratch->joint_edges.count + 1);
+    if (result != GX_OK) return result;
+    scratch->joint_walls.count = scratch->joint_edges.count + 1;
+    memset(scratch->joint_walls.data, 0, scratch->joint_walls.count * sizeof *scratch->joint_walls.data);
+    return GX_OK;
+}
+
+/* Lists in scratch.leaf_joints the joints on the boundary of a leaf of an open element, and notes in
+   scratch.joint_walls at which a wall touches it. node: that is a joint, or GXB_NONE */
+static gx_result gxp_find_leaf_joints(gx_body *body, uint32_t leaf, uint32_t node) {
     gxb_complex *cx = body->complex;
-    uint32_t first, count = 0, i, j, e0, en;
-    gx_result result = gxb_complex_open_element(cx, gxb_complex_leaf(cx, leaf)->element);
-    if (result == GX_OK) result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
-    joint->found = 0;
+    gxp_scratch *scratch = &body->scratch;
+    uint32_t first, count = 0, i, j, k, e0, en;
+    gx_result result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
+    scratch->leaf_joints.count = 0;
     for (i = 0; i < count && result == GX_OK; i++) {
         const uint32_t facet = gxp_item(cx, first + i);
+        const int wall = gxb_complex_facet(cx, facet)->wall != 0 || gxb_complex_leaf(cx, leaf)->removed != 0;
         result = gxb_facet_resolve_edges(cx, facet, &e0, &en);
         for (j = 0; j < en && result == GX_OK; j++) {
             const uint32_t e = gxp_item(cx, e0 + j);
-            if (joint->point != GXB_NONE ? gxb_complex_edge_start(cx, e) != joint->point : e >> 1 != joint->edge)
-                continue;
-            joint->found = 1;
-            joint->walled |= gxb_complex_facet(cx, facet)->wall != 0 || gxb_complex_leaf(cx, leaf)->removed != 0 ||
-                             (joint->point != GXB_NONE ? gxb_complex_point(cx, joint->point)->wall
-                                                       : gxb_complex_edge(cx, joint->edge)->wall) != 0;
+            uint32_t joints[2] = {GXP_NONE, GXP_NONE};
+            joints[0] = gxp_place_of(&scratch->joint_edges, e >> 1);
+            if (node != GXB_NONE && gxb_complex_edge_start(cx, e) == node) joints[1] = scratch->joint_edges.count;
+            for (k = 0; k < 2 && result == GX_OK; k++) {
+                if (joints[k] == GXP_NONE) continue;
+                result = gxp_push(body, &scratch->leaf_joints, joints[k]);
+                if (wall || (k == 0 ? gxb_complex_edge(cx, e >> 1)->wall : gxb_complex_point(cx, node)->wall) != 0)
+                    scratch->joint_walls.data[joints[k]] = 1;
+            }
         }
     }
+    gxp_sort_unique(&scratch->leaf_joints);
     return result;
 }
 
@@ -3543,26 +3594,20 @@ static gx_result gxp_find_leaf_joint(gx_body *body, uint32_t leaf, gxp_joint *jo
    of the two is GXB_NONE. */
 static gx_result gxp_is_joint_in_scope(gx_body *body, uint32_t element, uint32_t node, uint32_t edge, int *found) {
     gxp_scratch *scratch = &body->scratch;
-    gx_result result = GX_OK;
-    uint32_t i, j;
+    gx_result result;
+    uint32_t i;
     *found = 0;
     scratch->joint_leaves.count = scratch->joint_edges.count = 0;
-    if (edge == GXB_NONE)
-        result = gxp_push(body, &scratch->joint_edges, GXB_NONE);
-    else
+    result = gxb_complex_open_element(body->complex, element);
+    if (edge != GXB_NONE && result == GX_OK)
         result = gxp_push_divided_edges(body, gxb_complex_mesh_edge(body->complex, edge), &scratch->joint_edges);
+    if (result == GX_OK) result = gxp_start_joints(body);
     if (result == GX_OK)
         result = gxp_push_leaves(body, gxb_complex_root(body->complex, element), &scratch->joint_leaves);
-    for (i = 0; i < scratch->joint_leaves.count && result == GX_OK; i++) {
-        gxp_joint joint;
+    for (i = 0; i < scratch->joint_leaves.count && result == GX_OK && !*found; i++) {
         if (!gxp_in_scope(body, scratch->joint_leaves.data[i])) continue;
-        for (j = 0; j < scratch->joint_edges.count && result == GX_OK && !*found; j++) {
-            joint.point = node;
-            joint.edge = scratch->joint_edges.data[j];
-            joint.walled = 0;
-            result = gxp_find_leaf_joint(body, scratch->joint_leaves.data[i], &joint);
-            *found |= joint.found;
-        }
+        result = gxp_find_leaf_joints(body, scratch->joint_leaves.data[i], node);
+        *found = scratch->leaf_joints.count > 0;
     }
     return result;
 }
@@ -3599,60 +3644,71 @@ static gx_result gxp_cover_pinches(gx_body *body, gxb_triangle *t, uint32_t elem
     return result;
 }
 
-/* Appends the cells around the node that have the joint on their boundary. Removed leaves count as walls. */
-static gx_result gxp_find_joint_cells(gx_body *body, uint32_t node, gxp_joint *joint, gxp_words *found) {
+/* Drops keys that are there twice; they are ascending. */
+static void gxp_drop_same_keys(gxp_keys *keys) {
+    uint32_t i, n = 0;
+    for (i = 0; i < keys->count; i++)
+        if (n == 0 || keys->data[i] != keys->data[n - 1]) keys->data[n++] = keys->data[i];
+    keys->count = n;
+}
+
+/* Lists the pinched edges of a node, in parts, in scratch.joint_edges, and the leaves around it in joint_leaves. */
+static gx_result gxp_list_joint_edges(gx_body *body, uint32_t node) {
     gxp_scratch *scratch = &body->scratch;
-    uint32_t j, i;
+    gxb_complex *cx = body->complex;
+    uint32_t i, k;
     gx_result result = GX_OK;
-    joint->walled = 0;
-    scratch->joint_leaves.count = 0;
-    for (j = body->mesh.node_start[node]; j < body->mesh.node_start[node + 1] && result == GX_OK; j++)
-        result =
-            gxp_push_leaves(body, gxb_complex_root(body->complex, body->mesh.node_elements[j]), &scratch->joint_leaves);
+    scratch->joint_leaves.count = scratch->joint_edges.count = 0;
+    for (i = body->mesh.node_start[node]; i < body->mesh.node_start[node + 1] && result == GX_OK; i++) {
+        const uint32_t element = body->mesh.node_elements[i], *nodes = gxb_complex_element_nodes(cx, element);
+        result = gxb_complex_open_element(cx, element);
+        if (result == GX_OK) result = gxp_push_leaves(body, gxb_complex_root(cx, element), &scratch->joint_leaves);
+        for (k = 0; k < 6 && result == GX_OK; k++) {
+            const uint32_t edge = gxb_complex_element_edges(cx, element)[k];
+            if (!body->mesh.edge_pinched[edge]) continue;
+            if (nodes[gxp_edge_nodes[k][0]] == node || nodes[gxp_edge_nodes[k][1]] == node)
+                result = gxp_push_divided_edges(body, gxb_complex_mesh_edge(cx, edge), &scratch->joint_edges);
+        }
+    }
+    return result == GX_OK ? gxp_start_joints(body) : result;
+}
+
+/* Lists which cells around a node meet in which joints: the node, if it is pinched, and its pinched edges. Removed
+   leaves count as walls. */
+static gx_result gxp_list_joints(gx_body *body, uint32_t node) {
+    gxp_scratch *scratch = &body->scratch;
+    const uint32_t point = body->mesh.node_pinched[node] & 1 ? node : GXB_NONE;
+    uint32_t i, k;
+    gx_result result = gxp_list_joint_edges(body, node);
+    scratch->joint_cells.count = scratch->cell_joints.count = 0;
     for (i = 0; i < scratch->joint_leaves.count && result == GX_OK; i++) {
         const uint32_t leaf = scratch->joint_leaves.data[i];
-        result = gxp_find_leaf_joint(body, leaf, joint);
-        if (joint->found && !gxb_complex_leaf(body->complex, leaf)->removed && result == GX_OK)
-            result = gxp_push(body, found, body->leaves.data[leaf].cell);
+        result = gxp_find_leaf_joints(body, leaf, point);
+        if (gxb_complex_leaf(body->complex, leaf)->removed) continue;
+        for (k = 0; k < scratch->leaf_joints.count && result == GX_OK; k++)
+            result =
+                gxp_push_key(body, &scratch->joint_cells, scratch->leaf_joints.data[k], body->leaves.data[leaf].cell);
     }
-    return result;
+    if (result == GX_OK) result = gxp_sort_keys(body, &scratch->joint_cells, 0, scratch->joint_cells.count);
+    gxp_drop_same_keys(&scratch->joint_cells);
+    for (i = 0; i < scratch->joint_cells.count && result == GX_OK; i++)
+        result = gxp_push_key(body, &scratch->cell_joints, GXP_SECOND(scratch->joint_cells.data[i]),
+                              GXP_FIRST(scratch->joint_cells.data[i]));
+    return result == GX_OK ? gxp_sort_keys(body, &scratch->cell_joints, 0, scratch->cell_joints.count) : result;
 }
 
-/* Visits the cells that the joint connects to this cell. */
-static gx_result gxp_cross_joint(gx_body *body, uint32_t cell, uint32_t node, uint32_t point, uint32_t edge) {
+/* Visits the cells that joints connect to this one: those that gxp_list_joints has listed. */
+static gx_result gxp_cross_joints(gx_body *body, uint32_t cell) {
     gxp_scratch *scratch = &body->scratch;
-    gxp_joint joint;
-    uint32_t i, member = 0;
-    gx_result result;
-    joint.point = point;
-    joint.edge = edge;
-    joint.walled = joint.found = 0;
-    scratch->joint_cells.count = 0;
-    result = gxp_find_joint_cells(body, node, &joint, &scratch->joint_cells);
-    for (i = 0; i < scratch->joint_cells.count; i++) member |= scratch->joint_cells.data[i] == cell;
-    for (i = 0; i < scratch->joint_cells.count && result == GX_OK && member && !joint.walled; i++)
-        result = gxp_visit_cell(body, scratch->joint_cells.data[i], &scratch->subdomain_cells);
-    return result;
-}
-
-/* Visits the cells that the node, if it is pinched, and its pinched edges connect to this cell. */
-static gx_result gxp_cross_pinches(gx_body *body, uint32_t cell, uint32_t node) {
-    gxp_scratch *scratch = &body->scratch;
-    const uint32_t element = body->cells.data[cell].element;
-    gxb_complex *cx = body->complex;
-    uint32_t k, i;
-    gx_result result = gxb_complex_open_element(cx, element);
-    if (result == GX_OK && (body->mesh.node_pinched[node] & 1))
-        result = gxp_cross_joint(body, cell, node, node, GXB_NONE);
-    for (k = 0; k < 6 && result == GX_OK; k++) {
-        const uint32_t edge = gxb_complex_element_edges(cx, element)[k];
-        const uint32_t a = gxb_complex_element_nodes(cx, element)[gxp_edge_nodes[k][0]],
-                       b = gxb_complex_element_nodes(cx, element)[gxp_edge_nodes[k][1]];
-        if (!body->mesh.edge_pinched[edge] || (a != node && b != node)) continue;
-        scratch->joint_edges.count = 0;
-        result = gxp_push_divided_edges(body, gxb_complex_mesh_edge(cx, edge), &scratch->joint_edges);
-        for (i = 0; i < scratch->joint_edges.count && result == GX_OK; i++)
-            result = gxp_cross_joint(body, cell, node, GXB_NONE, scratch->joint_edges.data[i]);
+    const gxp_keys *of_cell = &scratch->cell_joints, *of_joint = &scratch->joint_cells;
+    uint32_t i = gxp_first_key(of_cell, (uint64_t)cell << 32), j;
+    gx_result result = GX_OK;
+    for (; i < of_cell->count && GXP_FIRST(of_cell->data[i]) == cell; i++) {
+        const uint32_t joint = GXP_SECOND(of_cell->data[i]);
+        if (scratch->joint_walls.data[joint]) continue;
+        j = gxp_first_key(of_joint, (uint64_t)joint << 32);
+        for (; j < of_joint->count && GXP_FIRST(of_joint->data[j]) == joint && result == GX_OK; j++)
+            result = gxp_visit_cell(body, GXP_SECOND(of_joint->data[j]), &scratch->subdomain_cells);
     }
     return result;
 }
@@ -4271,6 +4327,22 @@ static gx_result gxp_rough_area(gxb_complex *cx, uint32_t facet, double *area, d
     return result;
 }
 
+/* sum += (b - o) x (a - o) in the plane of two barycentric coordinates */
+static GXP_APART void gxp_fine_cross(gxb_num *sum, const gxp_fine_point *a, const gxp_fine_point *b,
+                                     const gxp_fine_point *o, const unsigned *axes) {
+    GXB_NUM(x);
+    GXB_NUM(y);
+    GXB_NUM(z);
+    GXB_NUM(w);
+    gxb_num_sub(&x, &b->c[axes[1]], &o->c[axes[1]]);
+    gxb_num_sub(&y, &b->c[axes[2]], &o->c[axes[2]]);
+    gxb_num_sub(&z, &a->c[axes[1]], &o->c[axes[1]]);
+    gxb_num_sub(&w, &a->c[axes[2]], &o->c[axes[2]]);
+    z.sign = -z.sign;
+    gxp_num_add_product(sum, &x, &w);
+    gxp_num_add_product(sum, &y, &z);
+}
+
 /* The polygon of scratch.facet_points as a share of the face opposite to node k, in numbers of any size: its area in
    the plane of two barycentric coordinates, where the face has area 1. */
 static double gxp_fine_share(gx_body *body, uint32_t element, uint32_t k) {
@@ -4279,32 +4351,15 @@ static double gxp_fine_share(gx_body *body, uint32_t element, uint32_t k) {
     uint32_t i;
     int c;
     GXB_NUM(sum);
-    GXB_NUM(one);
     gxi_part_axes(k, axes);
-    gxb_num_set(&one, 1.0, 0);
     for (i = 0; i < 3; i++)
         for (c = 0; c < 4; c++) p[i].c[c].d = p[i].limbs[c];
     for (i = 0; i < body->scratch.facet_points.count; i++) {
         /* a: this point, b: the one before */
         gxp_fine_point *const a = &p[1 + i % 2], *const b = &p[1 + (i + 1) % 2];
-        GXB_NUM(x);
-        GXB_NUM(y);
-        GXB_NUM(z);
-        GXB_NUM(w);
-        GXB_NUM(s);
-        GXB_NUM(t);
-        GXB_NUM(d);
         gxb_complex_barycentric_fine(body->complex, body->scratch.facet_points.data[i], element,
                                      i == 0 ? p[0].c : a->c);
-        if (i < 2) continue;
-        gxb_num_sub(&x, &b->c[axes[1]], &p[0].c[axes[1]]);
-        gxb_num_sub(&y, &b->c[axes[2]], &p[0].c[axes[2]]);
-        gxb_num_sub(&z, &a->c[axes[1]], &p[0].c[axes[1]]);
-        gxb_num_sub(&w, &a->c[axes[2]], &p[0].c[axes[2]]);
-        gxb_num_mul(&s, &x, &w);
-        gxb_num_mul(&t, &y, &z);
-        gxb_num_sub(&d, &s, &t);
-        gxp_num_add_product(&sum, &d, &one);
+        if (i >= 2) gxp_fine_cross(&sum, a, b, &p[0], axes);
     }
     return fabs(gxb_num_to_double(&sum));
 }
@@ -4808,7 +4863,7 @@ static gx_result gxp_walk_subdomain(gx_body *body, uint32_t cell, uint32_t node,
                                      all, open);
         if (result == GX_OK && index != GXP_NONE && scratch->interfaces.count > 0)
             result = gxp_cross_interfaces(body, index, all, open);
-        if (result == GX_OK && body->mesh.node_pinched[node]) result = gxp_cross_pinches(body, c, node);
+        if (result == GX_OK && body->mesh.node_pinched[node]) result = gxp_cross_joints(body, c);
     }
     return result;
 }
@@ -4889,6 +4944,7 @@ static gx_result gxp_find_subdomains(gx_body *body, uint32_t first, uint32_t end
     scratch->subdomain_cells.count = scratch->subdomains.count = scratch->taken.count = 0;
     scratch->stamp++;
     *sure = all || !body->mesh.node_pinched[node];
+    if (*sure && body->mesh.node_pinched[node]) result = gxp_list_joints(body, node);
     for (i = first; i < end && result == GX_OK && *sure; i++) {
         const uint32_t cell = GXP_SECOND(scratch->pairs.data[i]), start = scratch->subdomain_cells.count,
                        copy = gxp_copy_of(body, cell, node);
@@ -4958,12 +5014,15 @@ static gx_result gxp_divide_nodes(gxp_cut *cut) {
    coordinates of the element. Sums whose terms cancel are summed in exact numbers. Touches cells, through the undo log.
  */
 
+/* So many points are kept at most: they should stay in the cache. */
+#define GXP_BOUNDARY_POINTS 16384u
+
 /* Empties the boundary. Points are kept while the element stays the same: its cells share those of its walls. */
 static void gxp_clear_boundary(gx_body *body, int other_element) {
     gxp_scratch *scratch = &body->scratch;
     gxp_boundary *boundary = &scratch->boundary;
-    if (other_element || boundary->points.count > 64) boundary->points.count = 0;
-    boundary->triangles.count = boundary->facets.count = 0;
+    if (other_element || boundary->points.count > GXP_BOUNDARY_POINTS) boundary->points.count = 0;
+    boundary->triangles.count = boundary->facets.count = boundary->leaves.count = 0;
 }
 
 /* Adds a point of the complex with its barycentric coordinates in the element. */
@@ -4980,6 +5039,9 @@ static gx_result gxp_new_boundary_point(gx_body *body, uint32_t element, uint32_
     result = gxp_reserve(&body->config.allocator, &boundary->lambdas, 4 * sizeof(double), boundary->points.count,
                          &boundary->lambda_capacity, 1);
     *index = boundary->points.count;
+    if (*index == 0) boundary->fixed_count = 0;
+    boundary->fixed_of.count = *index;
+    if (result == GX_OK) result = gxp_push(body, &boundary->fixed_of, GXP_NONE);
     if (result == GX_OK) result = gxp_push(body, &boundary->points, point);
     if (result != GX_OK) return result;
     boundary->slots.data[point] = *index;
@@ -5024,6 +5086,7 @@ static gx_result gxp_add_boundary_leaf(gx_body *body, uint32_t leaf, uint32_t st
     gxb_complex *cx = body->complex;
     uint32_t first, count, i;
     gx_result result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
+    if (result == GX_OK) result = gxp_push(body, &body->scratch.boundary.leaves, leaf);
     for (i = 0; i < count && result == GX_OK; i++) {
         const uint32_t facet = gxp_item(cx, first + i);
         const gxb_facet *f = gxb_complex_facet(cx, facet);
@@ -5039,12 +5102,97 @@ static gx_result gxp_add_boundary_leaf(gx_body *body, uint32_t leaf, uint32_t st
     return result;
 }
 
+/* The coordinates of one of the boundary's points along three axes, with 184 bits behind the point */
+static gx_result gxp_fixed_coordinates(gx_body *body, uint32_t element, uint32_t point, const unsigned axes[3],
+                                       gxb_fixed x[3]) {
+    gxp_boundary *boundary = &body->scratch.boundary;
+    uint32_t *place = &boundary->fixed_of.data[point];
+    int c;
+    if (*place == GXP_NONE) {
+        const gx_result result = gxp_reserve(&body->config.allocator, &boundary->fixed, 4 * sizeof *boundary->fixed,
+                                             boundary->fixed_count, &boundary->fixed_capacity, 1);
+        if (result != GX_OK) return result;
+        *place = boundary->fixed_count++;
+        gxb_complex_barycentric_fixed(body->complex, boundary->points.data[point], element,
+                                      boundary->fixed + 4 * (size_t)*place);
+    }
+    for (c = 0; c < 3; c++) x[c] = boundary->fixed[4 * (size_t)*place + axes[c]];
+    return GX_OK;
+}
+
+/* Adds the moments of a tetrahedron of which six times the volume is D: D / 6, D s_i / 24, D (s_i s_j + the sum of
+   products x_i x_j of its corners x) / 120, where s is their sum. */
+static void gxp_add_tetrahedron(const double *x[4], const unsigned axes[3], double D, gxi_moments2 *m) {
+    double s[3], q;
+    int i, j, n, slot = 0;
+    for (i = 0; i < 3; i++) {
+        s[i] = x[0][axes[i]] + x[1][axes[i]] + x[2][axes[i]] + x[3][axes[i]];
+        m->first[i] += D * s[i] / 24;
+    }
+    m->volume += D / 6;
+    for (i = 0; i < 3; i++)
+        for (j = i; j < 3; j++) {
+            q = s[i] * s[j];
+            for (n = 0; n < 4; n++) q += x[n][axes[i]] * x[n][axes[j]];
+            m->second[slot++] += D * q / 120;
+        }
+}
+
+/* Adds the moments of a leaf in the frame with origin k, by tetrahedra from one of its corners to its triangles. The
+   leaf is convex, so no volume is negative and nothing cancels; volumes are exact. *count: of tetrahedra */
+static gx_result gxp_add_leaf_moments(gx_body *body, uint32_t element, uint32_t leaf, unsigned k, gxi_moments2 *m,
+                                      uint32_t *count) {
+    gxp_boundary *boundary = &body->scratch.boundary;
+    const uint32_t start = boundary->triangles.count;
+    gxb_complex *cx = body->complex;
+    unsigned axes[3];
+    gxb_fixed x[4][3];
+    uint32_t first, facets, i, j, o;
+    gx_result result = gxb_leaf_resolve_facets(cx, leaf, &first, &facets);
+    for (i = 0; i < facets && result == GX_OK; i++) {
+        const uint32_t facet = gxp_item(cx, first + i);
+        result = gxp_add_boundary_facet(body, element, facet, gxb_complex_facet(cx, facet)->leaf[0] == leaf);
+    }
+    gxi_part_axes(k, axes);
+    o = boundary->triangles.data[start];
+    if (result == GX_OK) result = gxp_fixed_coordinates(body, element, o, axes, x[3]);
+    for (i = start; i < boundary->triangles.count && result == GX_OK; i += 3) {
+        const uint32_t *t = boundary->triangles.data + i;
+        const double *corner[4];
+        if (t[0] == o || t[1] == o || t[2] == o) continue;
+        for (j = 0; j < 3 && result == GX_OK; j++) result = gxp_fixed_coordinates(body, element, t[j], axes, x[j]);
+        if (result != GX_OK) break;
+        for (j = 0; j < 3; j++) corner[j] = boundary->lambdas + 4 * (size_t)t[j];
+        corner[3] = boundary->lambdas + 4 * (size_t)o;
+        gxp_add_tetrahedron(corner, axes, gxb_fixed_determinant(x[3], x[0], x[1], x[2]), m);
+        (*count)++;
+    }
+    boundary->triangles.count = start;
+    return result;
+}
+
+/* The error of a tetrahedron's determinant, from six errors of 2^-179 in each of three edges of length 1 at most, is
+   this share of a volume that it moves by less than its last digits. */
+#define GXP_FIXED_VOLUME 7.5e-37 /* 2^-120 */
+
+/* Moments of the leaves that the boundary bounds. *enough: whether the volume is right to its last digits */
+static gx_result gxp_leaf_moments(gx_body *body, uint32_t element, unsigned k, gxi_moments2 *m, int *enough) {
+    const gxp_words *leaves = &body->scratch.boundary.leaves;
+    uint32_t i, count = 0;
+    gx_result result = GX_OK;
+    memset(m, 0, sizeof *m);
+    for (i = 0; i < leaves->count && result == GX_OK; i++)
+        result = gxp_add_leaf_moments(body, element, leaves->data[i], k, m, &count);
+    *enough = m->volume > GXP_FIXED_VOLUME * count;
+    return result;
+}
+
 typedef struct gxp_fine_sums {
     gxb_num c[10];
     gxb_limb limbs[10][GXB_NUM_LIMBS];
 } gxp_fine_sums;
 /* det(a, b, c) */
-static void gxp_fine_determinant(gxb_num *det, gxb_num *p[3][3]) {
+static GXP_APART void gxp_fine_determinant(gxb_num *det, gxb_num *p[3][3]) {
     static const int cyclic[3][2] = {{1, 2}, {2, 0}, {0, 1}};
     int k;
     det->sign = det->exp = 0;
@@ -5062,7 +5210,7 @@ static void gxp_fine_determinant(gxb_num *det, gxb_num *p[3][3]) {
 
 /* Adds the cone from the origin to a triangle. With D = det(a,b,c), s = a+b+c: D, D s_i, D (s_i s_j + a_i a_j + b_i b_j
    + c_i c_j). */
-static void gxp_fine_add(gxp_fine_sums *sums, gxb_num *p[3][3]) {
+static GXP_APART void gxp_fine_add(gxp_fine_sums *sums, gxb_num *p[3][3]) {
     gxb_limb limbs[3][GXB_NUM_LIMBS];
     gxb_num s[3];
     int i, j, k, slot = 4;
@@ -5095,26 +5243,19 @@ static void gxp_fine_coordinates(gx_body *body, uint32_t element, uint32_t point
     gxb_complex_barycentric_fine(body->complex, body->scratch.boundary.points.data[point], element, points[point].c);
 }
 
-/* Moments of the boundary in the frame with origin k, from coordinates with 180 bits. */
-static gx_result gxp_fine_moments(gx_body *body, uint32_t element, unsigned k, gxi_moments2 *m) {
-    gxp_boundary *boundary = &body->scratch.boundary;
-    const size_t size = boundary->points.count * sizeof(gxp_fine_point);
-    gxp_fine_point *points = (gxp_fine_point *)gxp_allocate(&body->config.allocator, size);
+/* Moments of the boundary's triangles, from the coordinates of its points along three axes */
+static GXP_APART void gxp_fine_sum(const gxp_boundary *boundary, gxp_fine_point *points, const unsigned *axes,
+                                   gxi_moments2 *m) {
     gxp_fine_sums sums;
-    unsigned axes[3];
     uint32_t i, t;
     int a, c;
-    if (points == NULL) return GX_ERROR_MEMORY;
     for (i = 0; i < 10; i++) {
         sums.c[i].sign = sums.c[i].exp = 0;
         sums.c[i].n = 0;
         sums.c[i].d = sums.limbs[i];
     }
-    for (i = 0; i < boundary->points.count; i++) points[i].c[0].d = NULL;
-    gxi_part_axes(k, axes);
     for (t = 0; t + 2 < boundary->triangles.count; t += 3) {
         gxb_num *p[3][3];
-        for (a = 0; a < 3; a++) gxp_fine_coordinates(body, element, boundary->triangles.data[t + (uint32_t)a], points);
         for (a = 0; a < 3; a++)
             for (c = 0; c < 3; c++) p[a][c] = &points[boundary->triangles.data[t + (uint32_t)a]].c[axes[c]];
         gxp_fine_add(&sums, p);
@@ -5122,6 +5263,21 @@ static gx_result gxp_fine_moments(gx_body *body, uint32_t element, unsigned k, g
     m->volume = gxb_num_to_double(&sums.c[0]) / 6;
     for (a = 0; a < 3; a++) m->first[a] = gxb_num_to_double(&sums.c[1 + a]) / 24;
     for (a = 0; a < 6; a++) m->second[a] = gxb_num_to_double(&sums.c[4 + a]) / 120;
+}
+
+/* Moments of the boundary in the frame with origin k, from coordinates with 180 bits. */
+static gx_result gxp_fine_moments(gx_body *body, uint32_t element, unsigned k, gxi_moments2 *m) {
+    const gxp_boundary *boundary = &body->scratch.boundary;
+    const size_t size = boundary->points.count * sizeof(gxp_fine_point);
+    gxp_fine_point *points = (gxp_fine_point *)gxp_allocate(&body->config.allocator, size);
+    unsigned axes[3];
+    uint32_t i;
+    if (points == NULL) return GX_ERROR_MEMORY;
+    for (i = 0; i < boundary->points.count; i++) points[i].c[0].d = NULL;
+    for (i = 0; i < boundary->triangles.count; i++)
+        gxp_fine_coordinates(body, element, boundary->triangles.data[i], points);
+    gxi_part_axes(k, axes);
+    gxp_fine_sum(boundary, points, axes, m);
     gxp_release(&body->config.allocator, points, size);
     return GX_OK;
 }
@@ -5170,6 +5326,7 @@ static gx_result gxp_boundary_moments(gx_body *body, uint32_t element, unsigned 
     gxp_boundary *boundary = &body->scratch.boundary;
     const gxb_complex *cx = body->complex;
     uint32_t i;
+    int enough;
     gx_result result = GX_OK;
     *k = gxp_nearest_vertex(body);
     for (i = 0; i < boundary->facets.count && result == GX_OK; i++) {
@@ -5180,9 +5337,9 @@ static gx_result gxp_boundary_moments(gx_body *body, uint32_t element, unsigned 
     if (result == GX_OK)
         result = gxi_part_moments_at(boundary->lambdas, boundary->points.count, boundary->triangles.data,
                                      boundary->triangles.count / 3, *k, m);
-    if (result == GX_OK && m->volume < GXP_CANCELLATION * gxp_cone_volumes(body, *k))
-        result = gxp_fine_moments(body, element, *k, m);
-    return result;
+    if (result != GX_OK || m->volume >= GXP_CANCELLATION * gxp_cone_volumes(body, *k)) return result;
+    result = gxp_leaf_moments(body, element, *k, m, &enough);
+    return result == GX_OK && !enough ? gxp_fine_moments(body, element, *k, m) : result;
 }
 
 /* The volume and mass of a cell; volume: of its element */
@@ -6205,13 +6362,12 @@ static void gxp_touch_copies(gx_body *body, const gxp_cell *cell) {
 }
 
 /* Notes the elements of the model that have changed. Without memory for that, the model is made whole; so it is where
-   copies are affine, and where the body was saved, loaded, cloned or restored since its last step, so that both bodies
-   then have the same model. */
+   the body was saved, loaded, cloned or restored since its last step, so that both bodies then have the same model. */
 static void gxp_note_changed(gx_body *body) {
     const gxp_words *changed = &body->undo.cells.rows, *made = &body->scratch.new_cells;
     gx_result result = GX_OK;
     uint32_t i;
-    if (body->copies.bends || body->model.resumed != 0) body->model.state = GXP_MODEL_STALE;
+    if (body->model.resumed != 0) body->model.state = GXP_MODEL_STALE;
     if (body->model.state == GXP_MODEL_STALE) return;
     for (i = 0; i < changed->count && result == GX_OK; i++)
         result = gxp_push(body, &body->model.changed, body->cells.data[changed->data[i]].element);
@@ -6508,7 +6664,7 @@ static uint32_t gxp_anchor_cell(gx_body *body, const gx_anchor *anchor) {
 
 /* det(b - a, c - a, d - a) of x = a b c d, exact */
 static GXP_COLD void gxp_exact_determinant(const double *const x[4], gxb_num *r) {
-    gxb_limb limbs[9][GXB_NUM_LIMBS];
+    gxb_limb limbs[9][GXB_NUM_LIMBS / 4]; /* differences of doubles have a fifth of the longest number's bits */
     gxb_num e[9];
     int i, k;
     GXB_NUM(p);
@@ -8207,21 +8363,20 @@ static size_t gxp_vector_count(const gx_body *body) {
 
 /* Room for a point's span with hidden vectors; 0: the point stays as it is, or the solver refuses it. */
 static size_t gxp_span_room(const gxs_point *point) {
-    const int whole = point->count <= GXS_POINT_OWN ? point->copies == NULL || point->weights != NULL
-                                                    : point->copies != NULL && point->weights != NULL;
+    const int whole =
+        point->copies != NULL ? point->weights != NULL : point->weights == NULL && point->count <= GXS_POINT_OWN;
     return whole && point->count <= GXS_POINT_MOST ? 4 * (size_t)point->count : 0;
 }
 
 /* Writes the point's span with the hidden vectors of its affine copies, whose weights are N_i (x - X_i) over
    affine_length: then the point is moved by the sum of N_i (a_i + A_i (x - X_i)). copies, weights: room for
-   gxp_span_room. The point refers to them, unless none of its copies is affine. */
+   gxp_span_room, which is not 0. The point refers to them, unless none of its copies is affine. */
 static void gxp_expand_point(const gx_body *body, gxs_point *point, uint32_t *copies, double *weights) {
     const uint32_t *from = point->copies != NULL ? point->copies : point->copy, *first = body->hidden.first.data;
     const double *weight = point->copies != NULL ? point->weights : point->weight;
-    const size_t room = gxp_span_room(point);
     uint32_t i, count = 0;
     int k, affine = 0;
-    if (room == 0 || body->hidden.copies.count == 0 || point->epoch != body->cuts.epoch) return;
+    if (body->hidden.copies.count == 0 || point->epoch != body->cuts.epoch) return;
     for (i = 0; i < point->count; i++) affine |= from[i] >= body->copies.count || first[from[i]] != GXS_NOT_AFFINE;
     if (!affine) return;
     for (i = 0; i < point->count; i++) { /* a hidden vector is no copy: the solver refuses what is beyond them */
@@ -8347,8 +8502,11 @@ static gx_result gxp_attach_points(gx_body *body, const gx_step_desc *desc, gxs_
     return result;
 }
 
-/* The point of a pair: anchor's position relative to that of other. copies, weights: room for 8, used by the point.
-   Returns 0 if the material of one is gone. */
+/* Vectors of one side of a pair with anchors at most */
+static size_t gxp_side_room(const gx_body *body) { return body->hidden.copies.count > 0 ? 16 : 4; }
+
+/* The point of a pair: anchor's position relative to that of other. copies, weights: room for two sides, used by the
+   point. Returns 0 if the material of one is gone. */
 static int gxp_place_pair(gx_body *body, const gx_anchor *anchor, const gx_anchor *other, uint32_t *copies,
                           double *weights, gxs_point *point) {
     gxs_point side[2];
@@ -8361,11 +8519,15 @@ static int gxp_place_pair(gx_body *body, const gx_anchor *anchor, const gx_ancho
         return 0;
     }
     point->count = 0;
-    for (i = 0; i < 2; i++)
-        for (k = 0; k < side[i].count; k++) {
-            copies[point->count] = side[i].copy[k];
-            weights[point->count++] = i == 0 ? side[i].weight[k] : -side[i].weight[k];
-        }
+    for (i = 0; i < 2; i++) {
+        uint32_t *own = copies + point->count;
+        double *share = weights + point->count;
+        memcpy(own, side[i].copy, sizeof side[i].copy);
+        memcpy(share, side[i].weight, sizeof side[i].weight);
+        gxp_expand_point(body, &side[i], own, share);
+        for (k = 0; k < side[i].count && i == 1; k++) share[k] = -share[k];
+        point->count += side[i].count;
+    }
     for (i = 0; i < 3; i++) point->position[i] -= side[1].position[i];
     point->copies = copies;
     point->weights = weights;
@@ -8375,17 +8537,20 @@ static int gxp_place_pair(gx_body *body, const gx_anchor *anchor, const gx_ancho
 static gx_result gxp_attach_pairs(gx_body *body, const gx_step_desc *desc, gxs_step_desc *step, gx_failure *failure) {
     static const char *const names[3] = {"pair_anchors.element", "pair_anchors.position", "pair_anchors.toward"};
     gxp_attached *attached = &body->attached;
+    const size_t span = 2 * gxp_side_room(body);
     gx_result result;
     size_t i;
+    if (desc->pair_count > 0 && desc->pair_anchors == NULL && body->hidden.copies.count > 0)
+        return gxp_refuse(failure, "pairs"); /* where its two sides are is not known */
     if (desc->pair_anchors == NULL || desc->pairs == NULL) return GX_OK;
     result = gxp_attached_room(body, &attached->pairs, sizeof *attached->pairs, &attached->pair_capacity,
                                desc->pair_count, "pair_count", failure);
     if (result == GX_OK)
         result = gxp_attached_room(body, &attached->sides.data, sizeof(uint32_t), &attached->sides.capacity,
-                                   8 * desc->pair_count, "pair_count", failure);
+                                   span * desc->pair_count, "pair_count", failure);
     if (result == GX_OK)
         result = gxp_attached_room(body, &attached->weights, sizeof(double), &attached->weight_capacity,
-                                   8 * desc->pair_count, "pair_count", failure);
+                                   span * desc->pair_count, "pair_count", failure);
     for (i = 0; i < desc->pair_count && result == GX_OK; i++) {
         const gx_anchor *anchor = &desc->pair_anchors[2 * i];
         gxs_pair *pair = &attached->pairs[i];
@@ -8393,7 +8558,7 @@ static gx_result gxp_attach_pairs(gx_body *body, const gx_step_desc *desc, gxs_s
         result = gxp_check_anchor(body, anchor, names, 2 * i, failure);
         if (result == GX_OK) result = gxp_check_anchor(body, anchor + 1, names, 2 * i + 1, failure);
         if (result == GX_OK &&
-            !gxp_place_pair(body, anchor, anchor + 1, attached->sides.data + 8 * i, attached->weights + 8 * i,
+            !gxp_place_pair(body, anchor, anchor + 1, attached->sides.data + span * i, attached->weights + span * i,
                             &pair->point) &&
             gxp_is_finite(pair->stiffness) && pair->stiffness > 0)
             pair->stiffness = 0;
@@ -8954,27 +9119,77 @@ static gx_result gxp_make_model(gx_body *body, gxs_model *model, gx_failure *fai
     return GX_OK;
 }
 
+/* Lists the elements around copies that are affine in the model and were not, or the other way round. before: by copy
+   of the model before, its first hidden vector */
+static gx_result gxp_list_bent(gx_body *body, const gxp_words *before) {
+    gx_result result = GX_OK;
+    uint32_t i;
+    for (i = 0; i < body->copies.count && result == GX_OK; i++) {
+        gxp_around around = gxp_around_copy(body, i);
+        if ((body->hidden.first.data[i] == GXS_NOT_AFFINE) ==
+            (before->data[body->copies.before[i] >> 1] == GXS_NOT_AFFINE))
+            continue;
+        while (result == GX_OK && gxp_next_around(body, &around))
+            result = gxp_push(body, &body->model.changed, body->cells.data[around.cell].element);
+    }
+    gxp_sort_unique(&body->model.changed);
+    return result;
+}
+
+/* Origins of copies and hidden vectors. before: as in gxp_list_bent */
+static gx_result gxp_vector_origins(gx_body *body, const gxp_words *before, gxp_words *origins) {
+    const gxp_words *copies = &body->hidden.copies;
+    gx_result result = gxp_start_words(body, origins, gxp_vector_count(body));
+    uint32_t i, k;
+    if (result != GX_OK) return result;
+    memcpy(origins->data, body->copies.before, body->copies.count * sizeof *origins->data);
+    for (i = 0; i < copies->count; i++) {
+        const uint32_t origin = body->copies.before[copies->data[i]], first = before->data[origin >> 1];
+        for (k = 0; k < 3; k++)
+            origins->data[body->copies.count + 3 * i + k] =
+                first == GXS_NOT_AFFINE ? origin | 1 : 2 * (first + k) | (origin & 1);
+    }
+    return GX_OK;
+}
+
+/* Affine copies, in place of those of the model before. before, origins: of the call */
+static gx_result gxp_change_affine(gx_body *body, gxp_words *before, gxp_words *origins) {
+    const gxp_words last = body->hidden.first;
+    gx_result result;
+    body->hidden.first = *before;
+    *before = last;
+    result = gxp_make_affine(body);
+    if (result != GX_OK || before->count == 0 || body->hidden.copies.count == 0) return result;
+    result = gxp_list_bent(body, before);
+    return result == GX_OK ? gxp_vector_origins(body, before, origins) : result;
+}
+
 /* Applies the changes to the solver's model. After LIMIT, or EMPTY if no part is left, the model must be set whole, and
    nothing has failed. After MEMORY it must be set whole too, but the call has failed. */
 static gx_result gxp_change_model(gx_body *body, gx_failure *failure) {
     gxp_model *model = &body->model;
+    gxp_hidden *hidden = &body->hidden;
     size_t room = 0;
     uint32_t i, cell;
     gxs_change change;
     gx_result result;
     gxp_sort_unique(&model->changed);
+    result = gxp_list_thin(body, 0);
+    if (result == GX_OK) result = gxp_change_affine(body, &hidden->before, &hidden->origins);
     for (i = 0; i < model->changed.count; i++)
         for (cell = model->changed.data[i]; cell != GXP_NONE; cell = body->cells.data[cell].next) room++;
-    result = gxp_reserve(&body->config.allocator, &model->parts, sizeof *model->parts, 0, &model->part_capacity, room);
+    if (result == GX_OK)
+        result =
+            gxp_reserve(&body->config.allocator, &model->parts, sizeof *model->parts, 0, &model->part_capacity, room);
     model->part_count = 0;
     for (i = 0; i < model->changed.count && result == GX_OK; i++)
         result = gxp_add_parts(body, model->changed.data[i], failure);
-    if (result == GX_OK) result = gxp_list_thin(body, 0);
-    if (result == GX_OK) result = gxp_make_constraints(body);
+    if (result == GX_OK && (hidden->before.count > 0) != (hidden->copies.count > 0)) result = GX_ERROR_LIMIT;
     memset(&change, 0, sizeof change);
-    change.copy_count = body->copies.count;
-    change.origins = body->copies.before;
-    change.held = body->copies.held;
+    change.copy_count = gxp_vector_count(body);
+    change.origins = hidden->copies.count > 0 ? hidden->origins.data : body->copies.before;
+    change.held = hidden->copies.count > 0 ? hidden->held : body->copies.held;
+    change.affine = hidden->copies.count > 0 ? hidden->first.data : NULL;
     change.groups = model->changed.data;
     change.group_count = model->changed.count;
     change.elements = model->parts;
@@ -9041,6 +9256,8 @@ GXFEM_API gx_result gx_body_model(gx_body *body, gxs_model *model, gx_failure *f
     if (model == NULL) return gxp_refuse(failure, "model");
     gxp_end(failure, GX_OK);
     result = gxp_update_held(body);
+    /* the solver's hidden vectors are no longer known */
+    if (body->copies.bends && body->model.state == GXP_MODEL_CHANGED) body->model.state = GXP_MODEL_STALE;
     if (result == GX_OK) result = gxp_make_model(body, model, failure);
     return gxp_close(failure, result);
 }
@@ -12319,6 +12536,16 @@ static int gxp_has_changed(const gxp_touch *t, uint32_t id) {
 #define GXP_TOUCH_SAME   0.25
 #define GXP_TOUCH_BEHIND 1e-9
 
+/* What the affine rate of a copy adds to the velocity of a material point along an axis; 0 where it has none */
+static double gxp_affine_speed(const gx_body *body, uint32_t copy, const double rest[3], int axis) {
+    const double *x = body->mesh.positions + 3 * (size_t)body->copies.node[copy];
+    double speed = 0;
+    int j;
+    for (j = 0; j < 3 && body->copies.affine != NULL && body->copies.affine[copy]; j++)
+        speed += body->copies.linear_rate[9 * (size_t)copy + 3 * (size_t)j + (size_t)axis] * (rest[j] - x[j]);
+    return speed;
+}
+
 /* Position, velocity and normal of all vertices, normals of facets */
 static void gxp_move_surface(gx_body *body, const gxp_touch_surface *s) {
     double *moved = body->touch.moved;
@@ -12331,7 +12558,8 @@ static void gxp_move_surface(gx_body *body, const gxp_touch_surface *s) {
         for (k = 3; k < 9; k++) x[k] = 0;
         for (n = 0; n < 4 && v->weights[n] > 0; n++)
             for (k = 0; k < 3; k++)
-                x[3 + k] += v->weights[n] * body->copies.velocity[3 * (size_t)v->copies[n] + (size_t)k];
+                x[3 + k] += v->weights[n] * (body->copies.velocity[3 * (size_t)v->copies[n] + (size_t)k] +
+                                             gxp_affine_speed(body, v->copies[n], v->rest, k));
     }
     for (i = 0; i < s->facet_count; i++) {
         static const uint32_t corner[3] = {0, 1, 2};
@@ -12740,38 +12968,51 @@ static void gxp_add_share(gxs_point *point, uint32_t *copies, double *weights, u
     weights[i] += weight;
 }
 
-/* Adds a share of a vertex to a point: of its place at rest and of what moves it. */
-static void gxp_add_place(const gxp_touch_vertex *v, double share, gxs_point *point, uint32_t *copies,
-                          double *weights) {
-    int k;
+/* Adds a share of a vertex to a point: of its place at rest and of what moves it, copies and their hidden vectors. */
+static void gxp_add_place(const gx_body *body, const gxp_touch_vertex *v, double share, gxs_point *point,
+                          uint32_t *copies, double *weights) {
+    int k, j;
     for (k = 0; k < 3; k++) point->position[k] += share * v->rest[k];
-    for (k = 0; k < 4 && v->weights[k] > 0; k++)
-        gxp_add_share(point, copies, weights, v->copies[k], share * v->weights[k]);
+    for (k = 0; k < 4 && v->weights[k] > 0; k++) {
+        const double weight = share * v->weights[k], *x = body->mesh.positions;
+        const uint32_t hidden = body->hidden.copies.count > 0 ? body->hidden.first.data[v->copies[k]] : GXS_NOT_AFFINE;
+        gxp_add_share(point, copies, weights, v->copies[k], weight);
+        x += 3 * (size_t)body->copies.node[v->copies[k]];
+        for (j = 0; j < 3 && hidden != GXS_NOT_AFFINE; j++)
+            gxp_add_share(point, copies, weights, hidden + (uint32_t)j,
+                          weight * (v->rest[j] - x[j]) / body->mesh.affine_length);
+    }
 }
 
 /* The point of a pair: its sample, relative to the place on the facet, or to that of the collider at the step's end.
    Returns 0 if nothing moves it. */
-static int gxp_meeting_point(const gxp_touch_surface *s, const gxp_touch_pair *pair, uint32_t *copies, double *weights,
-                             gxs_point *point) {
+static int gxp_meeting_point(const gx_body *body, const gxp_touch_surface *s, const gxp_touch_pair *pair,
+                             uint32_t *copies, double *weights, gxs_point *point) {
     double moves = 0;
     uint32_t m;
     int i, k;
     if (pair->sample < s->vertex_count)
-        gxp_add_place(&s->vertices[pair->sample], 1, point, copies, weights);
+        gxp_add_place(body, &s->vertices[pair->sample], 1, point, copies, weights);
     else
         for (i = 0; i < 3; i++)
             if (pair->share[i] > 0)
-                gxp_add_place(&s->vertices[s->facets[pair->sample - s->vertex_count].vertex[i]], pair->share[i], point,
-                              copies, weights);
+                gxp_add_place(body, &s->vertices[s->facets[pair->sample - s->vertex_count].vertex[i]], pair->share[i],
+                              point, copies, weights);
     for (i = 0; i < 3 && pair->facet != GXP_NONE; i++)
         if (pair->share[i] > 0)
-            gxp_add_place(&s->vertices[s->facets[pair->facet].vertex[i]], -pair->share[i], point, copies, weights);
+            gxp_add_place(body, &s->vertices[s->facets[pair->facet].vertex[i]], -pair->share[i], point, copies,
+                          weights);
     for (k = 0; k < 3; k++) point->position[k] -= pair->place[k] + pair->way[k];
     for (m = 0; m < point->count; m++) moves += fabs(weights[m]);
     for (m = 0; m < point->count && !(moves > 1e-9); m++) weights[m] = 0; /* it was rounding */
     point->copies = copies;
     point->weights = weights;
     return moves > 1e-9;
+}
+
+/* Vectors of the point of a pair at most */
+static size_t gxp_pair_span(const gx_body *body) {
+    return GXP_TOUCH_COPIES * (body->hidden.copies.count > 0 ? 4u : 1u);
 }
 
 /* A pair as the solver takes it. It begins with the force with which the sample pressed before. */
@@ -12797,8 +13038,8 @@ static void gxp_set_pair(gx_body *body, const gxp_touch_surface *s, uint32_t i, 
         if (pair->collider == GXP_NONE || t->changed.data[pair->collider]) to->flags |= GXS_PAIR_WAKES;
         memcpy(to->way, pair->way, sizeof to->way);
     }
-    if (!gxp_meeting_point(s, pair, t->sides.data + GXP_TOUCH_COPIES * (size_t)i,
-                           t->weights + GXP_TOUCH_COPIES * (size_t)i, &to->point))
+    if (!gxp_meeting_point(body, s, pair, t->sides.data + gxp_pair_span(body) * i, t->weights + gxp_pair_span(body) * i,
+                           &to->point))
         to->stiffness = 0;
     to->offset = fmin(0, fmin(0, pair->gap + pair->pressed) + dt * (recovery + fmax(0, pair->approach)));
     memcpy(t->slips + 3 * (t->given + (size_t)i), pair->slip, sizeof pair->slip);
@@ -12810,7 +13051,7 @@ static gx_result gxp_join_pairs(gx_body *body, gxp_touch_surface *s, double dt, 
     gxp_touch *t = &body->touch;
     gxp_attached *attached = &body->attached;
     const size_t given = step->pair_count, all = given + t->found;
-    const size_t copies = GXP_TOUCH_COPIES * (size_t)t->found;
+    const size_t copies = gxp_pair_span(body) * t->found;
     const int own = given > 0 && step->pairs != attached->pairs;
     gx_result result = all > INT32_MAX ? GX_ERROR_LIMIT : GX_OK;
     uint32_t i;
@@ -12844,8 +13085,7 @@ static gx_result gxp_attach_contact(gx_body *body, const gx_step_desc *desc, gxs
     const double dt = gxp_is_finite(step->dt) && step->dt > 0 ? step->dt : 0;
     gx_result result;
     body->touch.kept = 0;
-    if (body->copies.affine != NULL) return gxp_refuse(failure, "affine_below"); /* pairs have no affine copies */
-    if (step->quality > 0) return gxp_refuse(failure, "quality");                /* its parts would not search again */
+    if (step->quality > 0) return gxp_refuse(failure, "quality"); /* its parts would not search again */
     if (step->integrator == GXS_MIDPOINT) return gxp_refuse(failure, "integrator");
     if (step->pair_count > 0 && step->pairs == NULL) return gxp_refuse(failure, "pairs");
     result = gxp_take_colliders(body, desc, failure);
@@ -12859,14 +13099,21 @@ static gx_result gxp_attach_contact(gx_body *body, const gx_step_desc *desc, gxs
     return result == GX_OK ? gxp_end(failure, gxp_join_pairs(body, *surface, dt, step)) : result;
 }
 
+/* A number of a vector of the solver's model: of a copy's displacement, or of a hidden vector */
+static double gxp_vector_at(const gx_body *body, uint32_t vector, int axis) {
+    const uint32_t part = vector - body->copies.count;
+    if (vector < body->copies.count) return body->copies.displacement[3 * (size_t)vector + (size_t)axis];
+    return body->mesh.affine_length *
+           body->copies.linear[9 * (size_t)body->hidden.copies.data[part / 3] + 3 * (part % 3) + (uint32_t)axis];
+}
+
 /* Where a pair's sample is now, relative to its other side */
 static void gxp_pair_now(const gx_body *body, const gxs_pair *pair, double r[3]) {
     uint32_t i;
     int k;
     memcpy(r, pair->point.position, 3 * sizeof *r);
     for (i = 0; i < pair->point.count; i++)
-        for (k = 0; k < 3; k++)
-            r[k] += pair->point.weights[i] * body->copies.displacement[3 * (size_t)pair->point.copies[i] + (size_t)k];
+        for (k = 0; k < 3; k++) r[k] += pair->point.weights[i] * gxp_vector_at(body, pair->point.copies[i], k);
 }
 
 /* The stiffness of a pair's hold on the collider: of its depth and, while it sticks, of its slip. 00 01 02 11 12 22 */
@@ -12992,7 +13239,6 @@ GXFEM_API gx_result gx_body_contact(gx_body *body, const gx_contact_desc *desc, 
     double numbers[5];
     int i;
     if (body == NULL) return gxp_refuse(failure, "body");
-    if (desc != NULL && body->copies.affine != NULL) return gxp_refuse(failure, "affine_below");
     memset(&own, 0, sizeof own);
     if (desc != NULL) own = *desc;
     numbers[0] = own.stiffness;
@@ -13306,7 +13552,7 @@ static gx_result gxp_step_affine(gx_body *body, const gxs_step_desc *given, gx_s
     result = gxs_solver_step(body->solver, &step, u, v, report, &own);
     memcpy(copies->rest_time, rest, n * sizeof *rest);
     if (result != GX_OK) {
-        if (own.index != SIZE_MAX && own.field != NULL && own.index >= n && own.index < vectors &&
+        if (own.field != NULL && own.index >= n &&
             (strcmp(own.field, "displacement") == 0 || strcmp(own.field, "velocity") == 0))
             own.index = body->hidden.copies.data[(own.index - n) / 3];
         if (failure != NULL) *failure = own;
@@ -14255,14 +14501,55 @@ static gx_result gxp_place_in_air(gx_blade *blade, uint32_t layer, const gxp_sig
     return result;
 }
 
-/* How a layer sees a place in space: v->position is given. */
-static gx_result gxp_see_place(gx_blade *blade, uint32_t layer, gxp_front_vertex *v) {
+/* The material point of what a search has found, by the map of its cell */
+static void gxp_map_sight(const gx_blade *blade, const gxp_sight *sight, double rest[3]) {
+    static const double origin[3] = {0, 0, 0};
+    double corners[4][3];
+    gxp_cell_corners(blade->body, &blade->body->cells.data[blade->near.cells[sight->index].cell], 0, origin, corners);
+    gxp_weigh(corners, sight->weights, rest);
+}
+
+/* A place in the material that is farther from the one before it there than this, in distances in space, may be in
+   other cells of its layer too. */
+#define GXP_LEAP 2.0
+
+/* Where a layer lies over itself, a place is in several of its cells. The one whose material is nearest to that of the
+   place before it is meant: the edge goes on in the same part of the layer until it leaves that. */
+static gx_result gxp_seek_beside(gx_blade *blade, uint32_t layer, const gxp_front_vertex *v,
+                                 const gxp_front_vertex *beside, gxp_sight *sight) {
+    const gxp_vicinity *near = &blade->near;
+    const double reach = GXP_LEAP * sqrt(gxp_square_distance(v->position, beside->position));
+    double rest[3], least;
+    uint32_t i;
+    gx_result result = GX_OK;
+    gxp_map_sight(blade, sight, rest);
+    least = gxp_square_distance(rest, beside->rest);
+    for (i = near->layer_start.data[layer]; i < near->layer_start.data[layer + 1] && result == GX_OK; i++) {
+        gxp_sight other;
+        double square;
+        if (least <= reach * reach) break;
+        other.index = GXP_NONE;
+        result = gxp_seek_inside(blade, GXP_SECOND(near->order.data[i]), v->position, &other);
+        if (result != GX_OK || other.index == GXP_NONE) continue;
+        gxp_map_sight(blade, &other, rest);
+        square = gxp_square_distance(rest, beside->rest);
+        if (square >= least) continue;
+        least = square;
+        *sight = other;
+    }
+    return result;
+}
+
+/* How a layer sees a place in space: v->position is given. beside: a place next to it on the edge, or NULL */
+static gx_result gxp_see_place(gx_blade *blade, uint32_t layer, const gxp_front_vertex *beside, gxp_front_vertex *v) {
     static const double origin[3] = {0, 0, 0};
     const gxp_vicinity *near = &blade->near;
     const gxp_close_cell *c;
     double corners[4][3];
     gxp_sight sight;
-    const gx_result result = gxp_seek(blade, layer, v->position, &sight);
+    gx_result result = gxp_seek(blade, layer, v->position, &sight);
+    if (result == GX_OK && beside != NULL && sight.index != GXP_NONE && !(sight.square > 0))
+        result = gxp_seek_beside(blade, layer, v, beside, &sight);
     if (result != GX_OK) return result;
     c = &near->cells[sight.index != GXP_NONE ? sight.index
                                              : GXP_SECOND(near->order.data[near->layer_start.data[layer]])];
@@ -14285,13 +14572,13 @@ static gx_result gxp_see_place(gx_blade *blade, uint32_t layer, gxp_front_vertex
     return v->distance > 0 ? gxp_place_in_air(blade, layer, &sight, corners, v) : GX_OK;
 }
 
-/* How a layer sees a place on the edge */
+/* How a layer sees a place on the edge. beside: the place before it, or NULL */
 static gx_result gxp_see(gx_blade *blade, uint32_t layer, const double *edge, uint32_t count, double along,
-                         gxp_front_vertex *v) {
+                         const gxp_front_vertex *beside, gxp_front_vertex *v) {
     memset(v, 0, sizeof *v);
     v->along = along;
     gxp_edge_position(edge, count, along, v->position);
-    return gxp_see_place(blade, layer, v);
+    return gxp_see_place(blade, layer, beside, v);
 }
 
 /* Are there places between two that must be seen? In the air the line between them must stay out of the layer: they
@@ -14312,7 +14599,7 @@ static gx_result gxp_refine(gx_blade *blade, uint32_t layer, const double *edge,
     const double along = 0.5 * a->along + 0.5 * b->along;
     gx_result result;
     if (!gxp_must_refine(blade, a, b) || !(along > a->along && along < b->along)) return GX_OK;
-    result = gxp_see(blade, layer, edge, count, along, &middle);
+    result = gxp_see(blade, layer, edge, count, along, a, &middle);
     if (result == GX_OK) result = gxp_refine(blade, layer, edge, count, a, &middle);
     if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->seen, &middle);
     return result == GX_OK ? gxp_refine(blade, layer, edge, count, &middle, b) : result;
@@ -14377,7 +14664,8 @@ static gx_result gxp_push_cap(gx_blade *blade, uint32_t layer, const double *edg
     gxp_front_vertex v = *far;
     gx_result result = GX_OK;
     if (reach < length)
-        result = gxp_see(blade, layer, edge, count, near->along + reach / length * (far->along - near->along), &v);
+        result =
+            gxp_see(blade, layer, edge, count, near->along + reach / length * (far->along - near->along), near, &v);
     return result == GX_OK ? gxp_push_vertex(blade->body, &blade->samples, &v) : result;
 }
 
@@ -14415,10 +14703,10 @@ static gx_result gxp_see_edge(gx_blade *blade, uint32_t layer, const double *edg
     gx_result result;
     blade->last_sight = GXP_NONE;
     blade->seen.count = 0;
-    result = gxp_see(blade, layer, edge, count, 0, &before);
+    result = gxp_see(blade, layer, edge, count, 0, NULL, &before);
     if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->seen, &before);
     for (i = 1; i < count && result == GX_OK; i++) {
-        result = gxp_see(blade, layer, edge, count, (double)i, &v);
+        result = gxp_see(blade, layer, edge, count, (double)i, &before, &v);
         if (result == GX_OK) result = gxp_refine(blade, layer, edge, count, &before, &v);
         if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->seen, &v);
         before = v;
@@ -14426,15 +14714,17 @@ static gx_result gxp_see_edge(gx_blade *blade, uint32_t layer, const double *edg
     return result == GX_OK ? gxp_list_runs(blade, layer, edge, count) : result;
 }
 
-/* >>fronts: how far the edge has come in a layer ------------------------------------------------------------------- */
-/* In: a layer's front and how it sees the edge. Out: the front advanced where the edge is ahead of it, and the strip of
-   triangles between the two. Where the edge goes back through its own cut the front stays. Touches the blade's working
-   memory. */
+/* >>relations: where a place on the edge lies by the front --------------------------------------------------------- */
+/* In: a layer's front, the sheet of its last strips, places of the edge as the layer sees them. Out: which of them are
+   ahead of the front, which are behind it in the cut, and which have left that through its side. Changes nothing but
+   what it returns. */
 
 /* Shares of an element's size. An advance of less is none. A place behind the front is in the cut if it is no farther
    from its sheet, else the edge has left the cut through its side. */
 #define GXP_LEAST_ADVANCE 0.02
 #define GXP_CUT_WIDTH     0.15
+/* A vertex that has come less far is the old front's. */
+#define GXP_STAYED 1e-9
 /* A material point on the layer's surface that is no farther from the sheet is on a wall of the cut. */
 #define GXP_ON_SHEET 1e-6
 /* So far on the other side of the sheet does a track begin, in element sizes. */
@@ -14462,10 +14752,11 @@ static void gxp_near_front(const gxp_front_list *front, const double rest[3], gx
     r->distance = sqrt(gxp_square_distance(rest, nearest));
 }
 
-/* The point of a sheet nearest to a material point. Returns the distance. */
-static double gxp_near_sheet(const gxp_points *sheet, const double rest[3], double nearest[3]) {
+/* The triangle of a sheet nearest to a material point: the index of its first corner. Returns the distance. */
+static double gxp_near_sheet_part(const gxp_points *sheet, const double rest[3], double nearest[3], uint32_t *first) {
     double best = HUGE_VAL;
     uint32_t i;
+    *first = 0;
     for (i = 0; i + 2 < sheet->count; i += 3) {
         const double *x = sheet->data + 3 * (size_t)i;
         double at[3], square = 0;
@@ -14479,9 +14770,16 @@ static double gxp_near_sheet(const gxp_points *sheet, const double rest[3], doub
         square = gxp_onto_triangle(rest, x, x + 3, x + 6, at);
         if (square >= best) continue;
         best = square;
+        *first = i;
         memcpy(nearest, at, sizeof at);
     }
     return sqrt(best);
+}
+
+/* The point of a sheet nearest to a material point. Returns the distance. */
+static double gxp_near_sheet(const gxp_points *sheet, const double rest[3], double nearest[3]) {
+    uint32_t first;
+    return gxp_near_sheet_part(sheet, rest, nearest, &first);
 }
 
 /* A place behind the front: is it in the cut, has it left that through the side, or is it beside the front, ahead of
@@ -14523,7 +14821,9 @@ static int gxp_front_direction(const gxp_front_list *front, const gxp_relation *
 static void gxp_judge_air(const gx_blade *blade, const gxp_front_vertex *v, gxp_relation *r) {
     double nearest[3];
     const double distance = gxp_near_sheet(&blade->sheet, v->rest, nearest);
-    r->ahead = distance > GXP_CUT_WIDTH * v->size && distance > 2 * blade->tolerance;
+    const int off = distance > GXP_CUT_WIDTH * v->size && distance > 2 * blade->tolerance;
+    r->beside = off && !r->ahead;
+    r->ahead = off != 0;
 }
 
 /* Is a place in the air next to this layer's own cut: between its walls, or before their rims? There the maps of the
@@ -14552,34 +14852,6 @@ static gx_result gxp_relate(gx_blade *blade, const gxp_front_vertex *v, gxp_rela
     }
     if (!r->ahead) result = gxp_judge_behind(blade, v, r);
     if (r->distance < GXP_LEAST_ADVANCE * v->size && r->distance < 0.1 * blade->min_advance) r->ahead = 0;
-    return result;
-}
-
-/* What the layer's edge does at a move */
-typedef struct gxp_advance {
-    double most; /* the largest advance, m; of places inside, if there are any */
-    int strays;
-    int is_back; /* 1: all of the edge is in the air, and has come there through its own cut */
-} gxp_advance;
-
-/* The vertex of the front next to the nearest point */
-static uint32_t gxp_pin(const gxp_relation *r) { return r->segment + (r->share > 0.5); }
-
-/* Appends the front's own vertices for a run of places that are not ahead: *at is the first vertex not passed yet. */
-static gx_result gxp_stay(gx_blade *blade, const gxp_relation *r, uint32_t count, int first, int last, uint32_t *at) {
-    uint32_t low = GXP_NONE, high = 0, i;
-    gx_result result = GX_OK;
-    for (i = 0; i < count; i++) {
-        const uint32_t pin = gxp_pin(&r[i]);
-        if (pin < low) low = pin;
-        if (pin > high) high = pin;
-    }
-    if (first) low = 0;
-    if (last) high = blade->front.count - 1;
-    if (low < *at) low = *at;
-    for (i = low; i <= high && result == GX_OK; i++)
-        result = gxp_push_vertex(blade->body, &blade->advanced, &blade->front.data[i]);
-    if (high > *at) *at = high;
     return result;
 }
 
@@ -14618,6 +14890,96 @@ static int gxp_is_beside_behind(const gxp_front_list *samples, const gxp_relatio
     return !r[i].doubtful && !r[i].ahead && !(samples->data[i].distance > 0);
 }
 
+/* Places in the air beside the sheet, next to one in the material that has left the cut through its side, have left it
+   with that one: not those between it and one that is ahead. step: 1, to the next places; -1, to those before */
+static void gxp_stray_together(const gxp_front_list *samples, gxp_relation *r, uint32_t index, int step) {
+    uint32_t i = index, end;
+    for (;;) {
+        const int is_end =
+            step > 0 ? i + 1 >= samples->count || samples->data[i].gap : i == 0 || samples->data[i - 1].gap;
+        if (is_end) break;
+        i = step > 0 ? i + 1 : i - 1;
+        if (r[i].beside) continue;
+        if (r[i].ahead) return;
+        break;
+    }
+    for (end = i, i = index; i != end;) {
+        i = step > 0 ? i + 1 : i - 1;
+        if (r[i].beside) r[i].ahead = 0;
+    }
+}
+
+/* The way of a place from the front, of length 1. Returns 0 if it has none. */
+static int gxp_way_from_front(const gxp_front_list *front, const gxp_front_vertex *v, double way[3]) {
+    gxp_relation r;
+    double nearest[3];
+    int k;
+    gxp_near_front(front, v->rest, &r, nearest);
+    for (k = 0; k < 3; k++) way[k] = v->rest[k] - nearest[k];
+    return gxp_unit(way, way);
+}
+
+/* Ways whose directions differ by less than this cosine says are one. */
+#define GXP_SAME_WAY 0.8
+
+/* A place that seems to have left the cut through its side, next to one ahead that has come the same way, is ahead:
+   where the edge turns, only the front's direction is another. */
+static void gxp_come_along(gxp_relation *r, const gxp_front_list *samples, const gxp_front_list *front, uint32_t from,
+                           uint32_t to) {
+    double way[3], other[3];
+    if (samples->data[from < to ? from : to].gap) return;
+    if (!r[to].strays || !r[from].ahead || r[from].beside) return;
+    if (!gxp_way_from_front(front, &samples->data[from], other)) return;
+    if (!gxp_way_from_front(front, &samples->data[to], way) || !(gxp_dot(way, other) > GXP_SAME_WAY)) return;
+    r[to].ahead = 1;
+    r[to].strays = 0;
+}
+
+/* Judges places by those next to them. */
+static void gxp_judge_together(const gxp_front_list *samples, const gxp_front_list *front, gxp_relation *r) {
+    uint32_t i;
+    for (i = 0; i + 1 < samples->count; i++) gxp_come_along(r, samples, front, i, i + 1);
+    for (i = samples->count; i > 1; i--) gxp_come_along(r, samples, front, i - 1, i - 2);
+    for (i = 0; i < samples->count; i++) {
+        if (!r[i].strays) continue;
+        gxp_stray_together(samples, r, i, -1);
+        gxp_stray_together(samples, r, i, 1);
+    }
+}
+
+/* >>fronts: how far the edge has come in a layer ------------------------------------------------------------------- */
+/* In: a layer's front and how it sees the edge. Out: the front advanced where the edge is ahead of it, and the strip of
+   triangles between the two. Where the edge goes back through its own cut the front stays. Touches the blade's working
+   memory. */
+
+/* What the layer's edge does at a move */
+typedef struct gxp_advance {
+    double most; /* the largest advance, m; of places inside, if there are any */
+    int strays;
+    int is_back; /* 1: all of the edge is in the air, and has come there through its own cut */
+} gxp_advance;
+
+/* The vertex of the front next to the nearest point */
+static uint32_t gxp_pin(const gxp_relation *r) { return r->segment + (r->share > 0.5); }
+
+/* Appends the front's own vertices for a run of places that are not ahead: *at is the first vertex not passed yet. */
+static gx_result gxp_stay(gx_blade *blade, const gxp_relation *r, uint32_t count, int first, int last, uint32_t *at) {
+    uint32_t low = GXP_NONE, high = 0, i;
+    gx_result result = GX_OK;
+    for (i = 0; i < count; i++) {
+        const uint32_t pin = gxp_pin(&r[i]);
+        if (pin < low) low = pin;
+        if (pin > high) high = pin;
+    }
+    if (first) low = 0;
+    if (last) high = blade->front.count - 1;
+    if (low < *at) low = *at;
+    for (i = low; i <= high && result == GX_OK; i++)
+        result = gxp_push_vertex(blade->body, &blade->advanced, &blade->front.data[i]);
+    if (high > *at) *at = high;
+    return result;
+}
+
 /* Lists in blade.advanced the front as far as the samples have come: these where they are ahead, else its own
    vertices. */
 static gx_result gxp_advance_front(gx_blade *blade, gxp_advance *move) {
@@ -14638,6 +15000,7 @@ static gx_result gxp_advance_front(gx_blade *blade, gxp_advance *move) {
         result = gxp_relate(blade, v, &r[i]);
         if (in_air) r[i].ahead = !move->is_back && r[i].distance > 0 && !gxp_is_in_open_cut(blade, v);
     }
+    if (result == GX_OK && !in_air) gxp_judge_together(samples, &blade->front, r);
     for (i = 0; i < samples->count && result == GX_OK; i++) {
         const gxp_front_vertex *v = &samples->data[i];
         if (r[i].doubtful && gxp_is_beside_behind(samples, r, i)) r[i].ahead = 0;
@@ -14746,10 +15109,30 @@ static double gxp_bend(const gx_blade *blade) {
 
 static int gxp_has_direction(const gxp_front_vertex *v) { return gxp_dot(v->ahead, v->ahead) > 0; }
 
-/* The direction in which each vertex of the new front has come from the old one. Those that have not come take the
-   old front's, or their neighbours'. */
-static void gxp_set_directions(const gxp_front_list *from, gxp_front_list *to) {
+/* The direction of a front at the point of it that is nearest to a vertex. Returns 0 if it has none there. */
+static int gxp_old_direction(const gxp_front_list *from, const gxp_relation *r, double ahead[3]) {
+    const gxp_front_vertex *v = &from->data[r->segment];
+    int k;
+    if (!gxp_has_direction(&v[0]) && !gxp_has_direction(&v[1])) return 0;
+    for (k = 0; k < 3; k++) ahead[k] = (1 - r->share) * v[0].ahead[k] + r->share * v[1].ahead[k];
+    return 1;
+}
+
+/* Vertices without a direction take that of the nearest one that has. */
+static void gxp_spread_directions(gxp_front_list *to) {
     uint32_t i, off;
+    for (i = 0; i < to->count; i++)
+        for (off = 1; off < to->count && !gxp_has_direction(&to->data[i]); off++) {
+            if (i >= off) memcpy(to->data[i].ahead, to->data[i - off].ahead, sizeof to->data[i].ahead);
+            if (!gxp_has_direction(&to->data[i]) && i + off < to->count)
+                memcpy(to->data[i].ahead, to->data[i + off].ahead, sizeof to->data[i].ahead);
+        }
+}
+
+/* The direction in which each vertex of the new front has come from the old one. Those that have stayed keep theirs.
+   Those that have hardly come take their neighbours', which have: where the edge turns, the old front's is another. */
+static void gxp_set_directions(const gxp_front_list *from, gxp_front_list *to) {
+    uint32_t i, come = 0;
     int k;
     for (i = 0; i < to->count; i++) {
         gxp_front_vertex *v = &to->data[i];
@@ -14757,17 +15140,19 @@ static void gxp_set_directions(const gxp_front_list *from, gxp_front_list *to) {
         double nearest[3], way[3];
         gxp_near_front(from, v->rest, &r, nearest);
         for (k = 0; k < 3; k++) way[k] = v->rest[k] - nearest[k];
-        if (gxp_unit(way, v->ahead) && r.distance > GXP_LEAST_ADVANCE * v->size) continue;
-        if (!gxp_has_direction(&from->data[r.segment]) && !gxp_has_direction(&from->data[r.segment + 1])) continue;
-        for (k = 0; k < 3; k++)
-            v->ahead[k] = (1 - r.share) * from->data[r.segment].ahead[k] + r.share * from->data[r.segment + 1].ahead[k];
+        if (gxp_unit(way, way) && r.distance > GXP_LEAST_ADVANCE * v->size) {
+            memcpy(v->ahead, way, sizeof way);
+            come++;
+        } else if (r.distance > GXP_STAYED * v->size || !gxp_old_direction(from, &r, v->ahead))
+            v->ahead[0] = v->ahead[1] = v->ahead[2] = 0;
     }
-    for (i = 0; i < to->count; i++)
-        for (off = 1; off < to->count && !gxp_has_direction(&to->data[i]); off++) {
-            if (i >= off) memcpy(to->data[i].ahead, to->data[i - off].ahead, sizeof to->data[i].ahead);
-            if (!gxp_has_direction(&to->data[i]) && i + off < to->count)
-                memcpy(to->data[i].ahead, to->data[i + off].ahead, sizeof to->data[i].ahead);
-        }
+    for (i = 0; i < to->count && come == 0; i++) {
+        gxp_relation r;
+        double nearest[3];
+        gxp_near_front(from, to->data[i].rest, &r, nearest);
+        gxp_old_direction(from, &r, to->data[i].ahead);
+    }
+    gxp_spread_directions(to);
 }
 
 /* Cuts the strip up to a new front, which becomes the layer's. */
@@ -14814,23 +15199,38 @@ static gx_result gxp_begin_outside(gx_blade *blade, gxp_advance *move, gx_blade_
     return gxp_copy_front(blade->body, &blade->front, &blade->samples);
 }
 
-/* The place on the sheet at which the edge has left it: the nearest one, but for the rim of the sheet, which a track
-   would miss. way: from there to where the edge is. */
-static void gxp_leave_sheet(const gxp_front_list *front, const gxp_points *sheet, const double rest[3], double inward,
-                            double nearest[3], double way[3]) {
-    double direction[3], at[3], off;
-    gxp_relation r;
-    int k;
-    gxp_near_sheet(sheet, rest, nearest);
-    gxp_near_front(front, nearest, &r, at);
-    if (r.distance < inward && gxp_front_direction(front, &r, direction) && gxp_unit(direction, direction)) {
-        for (k = 0; k < 3; k++) at[k] -= inward * direction[k];
-        gxp_near_sheet(sheet, at, nearest);
-        for (k = 0; k < 3; k++) way[k] = rest[k] - nearest[k];
-        off = gxp_dot(way, direction);
-        for (k = 0; k < 3; k++) way[k] -= off * direction[k];
-        return;
+/* Moves a point of a sheet away from its rims, if it is next to one: to where the sheet goes on on all sides. */
+static void gxp_move_inward(const gxp_points *sheet, uint32_t first, double inward, double nearest[3]) {
+    static const double turns[8][2] = {{1, 0},  {0.7071, 0.7071},   {0, 1},  {-0.7071, 0.7071},
+                                       {-1, 0}, {-0.7071, -0.7071}, {0, -1}, {0.7071, -0.7071}};
+    const double *x = sheet->data + 3 * (size_t)first;
+    double u[3], v[3], normal[3], outward[3] = {0, 0, 0}, place[3], at[3];
+    int i, k;
+    for (k = 0; k < 3; k++) {
+        u[k] = x[3 + k] - x[k];
+        v[k] = x[6 + k] - x[k];
     }
+    gxp_cross(normal, u, v);
+    if (!gxp_unit(normal, normal) || !gxp_unit(u, u)) return;
+    gxp_cross(v, normal, u);
+    for (i = 0; i < 8; i++) {
+        for (k = 0; k < 3; k++) place[k] = nearest[k] + inward * (turns[i][0] * u[k] + turns[i][1] * v[k]);
+        if (gxp_near_sheet(sheet, place, at) <= 0.5 * inward) continue;
+        for (k = 0; k < 3; k++) outward[k] += turns[i][0] * u[k] + turns[i][1] * v[k];
+    }
+    if (gxp_dot(outward, outward) < 0.25 || !gxp_unit(outward, outward)) return;
+    for (k = 0; k < 3; k++) place[k] = nearest[k] - inward * outward[k];
+    gxp_near_sheet(sheet, place, nearest);
+}
+
+/* The place on the sheet at which the edge has left it: the nearest one, but for the rims of the sheet, which a track
+   would miss. way: from there to where the edge is. */
+static void gxp_leave_sheet(const gxp_points *sheet, const double rest[3], double inward, double nearest[3],
+                            double way[3]) {
+    uint32_t first;
+    int k;
+    gxp_near_sheet_part(sheet, rest, nearest, &first);
+    gxp_move_inward(sheet, first, inward, nearest);
     for (k = 0; k < 3; k++) way[k] = rest[k] - nearest[k];
 }
 
@@ -14840,7 +15240,7 @@ static void gxp_cross_sheet(const gx_blade *blade, const double side[3], gxp_fro
     double nearest[3], way[3];
     const double across = fmax(2 * blade->tolerance, GXP_CROSSING * v->size);
     int k;
-    gxp_leave_sheet(&blade->front, &blade->sheet, v->rest, across, nearest, way);
+    gxp_leave_sheet(&blade->sheet, v->rest, across, nearest, way);
     memcpy(v->ahead, side, sizeof v->ahead);
     if (gxp_dot(way, way) > 4 * blade->tolerance * blade->tolerance) gxp_unit(way, v->ahead);
     for (k = 0; k < 3; k++) v->rest[k] = nearest[k] - across * v->ahead[k];
@@ -14858,7 +15258,7 @@ static gx_result gxp_list_crossings(gx_blade *blade) {
         double nearest[3], way[3];
         const double distance = gxp_near_sheet(&blade->sheet, v->rest, nearest);
         if (v->distance > 0 || !(distance > most)) continue;
-        gxp_leave_sheet(&blade->front, &blade->sheet, v->rest, GXP_CROSSING * v->size, nearest, way);
+        gxp_leave_sheet(&blade->sheet, v->rest, GXP_CROSSING * v->size, nearest, way);
         if (gxp_unit(way, side)) most = distance;
     }
     blade->crossings.count = 0;
@@ -16897,7 +17297,7 @@ static gx_result gxp_push_tool_place(gx_blade *blade, uint32_t layer, const doub
     gx_result result;
     memset(&v, 0, sizeof v);
     memcpy(v.position, position, sizeof v.position);
-    result = gxp_see_place(blade, layer, &v);
+    result = gxp_see_place(blade, layer, NULL, &v);
     if (result == GX_OK && v.distance > 0) result = gxp_is_in_layer(blade, layer, v.extended, &inside);
     if (!inside) memcpy(v.rest, v.extended, sizeof v.rest);
     return result == GX_OK ? gxp_push_vertex(blade->body, &blade->samples, &v) : result;
@@ -17322,14 +17722,13 @@ static void gxp_cross_line(gxp_grid *grid, const double *a, const double *b, con
     line[0] = first;
 }
 
-/* The places along an axis between two coordinates, in halves of a cube, with the first beyond each. Coordinates are at
-   most 2^36 halves: these are rounded by far less than 2^-6. */
+/* The places along an axis between two coordinates of surfaces, in halves of a cube, with the first beyond each: these
+   are in the grid, which reaches farther by a cube. Coordinates are at most 2^36 halves: these are rounded by far less
+   than 2^-6. */
 static void gxp_grid_range(const gxp_grid *grid, int axis, double low, double high, uint32_t range[2]) {
-    const double last = 2.0 * grid->size[axis], slack = 0.015625;
-    const double from = floor((low - grid->start[axis]) / grid->half - slack);
-    const double to = ceil((high - grid->start[axis]) / grid->half + slack);
-    range[0] = from > 0 ? (uint32_t)from : 0;
-    range[1] = to < last ? (uint32_t)to : (uint32_t)last;
+    const double slack = 0.015625;
+    range[0] = (uint32_t)floor((low - grid->start[axis]) / grid->half - slack);
+    range[1] = (uint32_t)ceil((high - grid->start[axis]) / grid->half + slack);
 }
 
 /* Counts the crossings of a triangle with all lines of nodes along x. */
@@ -17408,7 +17807,7 @@ static void gxp_mark_elements(gxp_grid *grid, const gxp_search *search, const do
         for (k = 0; k < 3; k++) {
             const uint32_t reach = k == axis ? 3 : 2;
             low[k] = range[k][0] > reach ? (range[k][0] - reach + 1) / 2 : 0;
-            high[k] = (range[k][1] - (k == axis && range[k][1] > 0)) / 2;
+            high[k] = (range[k][1] - (k == axis)) / 2;
         }
         for (cube[2] = low[2]; cube[2] <= high[2]; cube[2]++)
             for (cube[1] = low[1]; cube[1] <= high[1]; cube[1]++)
@@ -18206,7 +18605,7 @@ static void gxp_require_true(gxb_stream *s, int holds) {
 }
 static void gxp_pass_word(gxb_stream *s, uint32_t *word) { gxb_stream_pass(s, word, 1, sizeof *word); }
 
-#define GXP_SAVE_VERSION 11u /* raised by every change of the format */
+#define GXP_SAVE_VERSION 12u /* raised by every change of the format */
 #define GXP_BYTE_ORDER   0x01020304u
 
 typedef struct gxp_head {
@@ -19302,6 +19701,7 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 }
 
 #undef GXP_COLD
+#undef GXP_APART
 #undef GXP_PREFETCH
 #undef GXP_PREFETCHES
 #undef GXP_NONE
@@ -19356,6 +19756,8 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_LAST_ROUND
 #undef GXP_EXPECTED
 #undef GXP_CANCELLATION
+#undef GXP_BOUNDARY_POINTS
+#undef GXP_FIXED_VOLUME
 #undef GXP_REST_CELLS
 #undef GXP_REST
 #undef GXP_WEIGHT_LOSS
@@ -19382,6 +19784,9 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_CAP
 #undef GXP_SURELY
 #undef GXP_AIR
+#undef GXP_LEAP
+#undef GXP_SAME_WAY
+#undef GXP_STAYED
 #undef GXP_LEAST_ADVANCE
 #undef GXP_CHORD_HALVES
 #undef GXP_CHORD_OFF

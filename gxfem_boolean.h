@@ -28,7 +28,8 @@
  *
  * Contents. Search for >>name. Only the first function of a family is listed with its prefix.
  *     >>shared      result codes, allocator, job hook
- *     >>numbers     exact numbers, integers times powers of two: gxb_num_set, add, sub, mul, to_double, ratio
+ *     >>numbers     exact numbers, integers times powers of two: gxb_num_set, add, sub, mul, to_double, ratio;
+ *                   gxb_fixed_determinant
  *     >>predicates  of coordinates: gxb_orient2d, orient3d, incircle, insphere, winding_number
  *                   a plane: gxb_plane_init
  *                   points given, on a line and a plane, on three planes: gxb_point_explicit, line_plane, three_planes
@@ -40,7 +41,7 @@
  *                   giving back what nothing needs: is_sparse, survey, compact, forget
  *                   reading: gxb_complex_point and others
  *                   questions: gxb_complex_side, turn, compare, leaf_at, winding, barycentric, support,
- *                   barycentric_fine
+ *                   barycentric_fine, barycentric_fixed
  *                   points of moved elements: gxb_pullback_misses, set, contains, orient, weights,
  *                   gxb_complex_pullback_side
  *     >>stream      a complex as bytes: gxb_stream_pass, has; gxb_complex_save, load
@@ -54,9 +55,9 @@
  * Of complexes:
  *     storage         >>memory (arrays), >>store (points, planes, exact numbers), >>transaction
  *     structure       >>topology (of the mesh), >>access (reading), >>places (which leaf is there), >>split (by a
- *                     plane)
+ *                     plane), >>pairs (of doubles)
  *     a triangle      >>clip, >>walls, >>cover (what is there already), >>rebalance and >>crowds (trees), >>insert
- *     questions       >>inside (winding numbers), >>pairs (of doubles), >>barycentric, >>pullback (of points of space)
+ *     questions       >>inside (winding numbers), >>barycentric, >>pullback (of points of space)
  *     less            >>census (what is needed), >>unite (what becomes one), >>compact (the rest goes)
  *     bytes           >>save, >>check (what was read), >>load
  *
@@ -218,12 +219,14 @@ extern "C" {
 #if !defined(GXB_LIMB32) &&                                                                                            \
     (defined(__SIZEOF_INT128__) || (defined(GXFEM_INTRINSICS) && (defined(_M_X64) || defined(_M_ARM64))))
 typedef uint64_t gxb_limb;
-#define GXB_LIMB_BITS 64
-#define GXB_NUM_LIMBS 168
+#define GXB_LIMB_BITS   64
+#define GXB_NUM_LIMBS   168
+#define GXB_FIXED_LIMBS 3
 #else
 typedef uint32_t gxb_limb;
-#define GXB_LIMB_BITS 32
-#define GXB_NUM_LIMBS 336
+#define GXB_LIMB_BITS   32
+#define GXB_NUM_LIMBS   336
+#define GXB_FIXED_LIMBS 6
 #endif
 
 /* sign * (d[0] + d[1] B + ... + d[n-1] B^(n-1)) * B^exp with B = 2^GXB_LIMB_BITS. Zero: sign 0, n 0. Neither end limb
@@ -253,6 +256,15 @@ GXFEM_API void gxb_num_mul(gxb_num *r, const gxb_num *a, const gxb_num *b);
 GXFEM_API double gxb_num_to_double(const gxb_num *a);
 /* a / b, relative error below 2^-50 within 2^-1000 ... 2^1000 */
 GXFEM_API double gxb_num_ratio(const gxb_num *a, const gxb_num *b);
+
+/* A number from 0 to 1 as an integer times 2^-184, lowest limb first: a barycentric coordinate */
+#define GXB_FIXED_BITS 184
+typedef struct gxb_fixed {
+    gxb_limb d[GXB_FIXED_LIMBS];
+} gxb_fixed;
+/* det(a - o, b - o, c - o) of vectors of three such numbers; exact but for the rounding of the result, 2^-51 of it */
+GXFEM_API double gxb_fixed_determinant(const gxb_fixed o[3], const gxb_fixed a[3], const gxb_fixed b[3],
+                                       const gxb_fixed c[3]);
 
 /* >>predicates ----------------------------------------------------------------------------------------------------- */
 
@@ -647,6 +659,9 @@ GXFEM_API void gxb_complex_barycentric(gxb_complex *complex, uint32_t point, uin
 GXFEM_API unsigned gxb_complex_support(const gxb_complex *complex, uint32_t point, uint32_t element);
 /* The coordinates with a relative error below 2^-180. */
 GXFEM_API void gxb_complex_barycentric_fine(gxb_complex *complex, uint32_t point, uint32_t element, gxb_num lambda[4]);
+/* The coordinates with an error below 2^-179 */
+GXFEM_API void gxb_complex_barycentric_fixed(gxb_complex *complex, uint32_t point, uint32_t element,
+                                             gxb_fixed lambda[4]);
 
 /* A point p of space against an element whose corners have moved to x0 ... x3. The affine map that moves the corners
    takes a material point to p: the sum of D_i / D times corner i at rest. D = |x1-x0 x2-x0 x3-x0|, and D_i is the same
@@ -887,9 +902,14 @@ extern "C" {
 #define GXBP_APART          __attribute__((noinline))
 #else
 #define GXBP_FETCH(address) ((void)(address))
+#if defined(_MSC_VER)
+#define GXBP_COLD  __declspec(noinline)
+#define GXBP_APART __declspec(noinline)
+#else
 #define GXBP_COLD
-#define GXBP_RARE
 #define GXBP_APART
+#endif
+#define GXBP_RARE
 #endif
 
 /* >>bits: doubles taken apart and put together without floating-point arithmetic ----------------------------------- */
@@ -1176,6 +1196,93 @@ GXFEM_API double gxb_num_ratio(const gxb_num *a, const gxb_num *b) {
     return (a->sign * b->sign < 0 ? -q : q) * gxbp_power(power_a);
 }
 
+/* r = |r| for a number of n limbs in two's complement. Returns 1 if it was negative. */
+static int gxbp_fixed_absolute(gxb_limb *r, uint32_t n) {
+    const int negative = (int)(r[n - 1] >> (GXB_LIMB_BITS - 1));
+    gxb_limb carry = 1;
+    uint32_t i;
+    for (i = 0; negative && i < n; i++) {
+        r[i] = (gxb_limb)(~r[i] + carry);
+        carry = (gxb_limb)(carry & (r[i] == 0));
+    }
+    return negative;
+}
+
+/* r = |a - b|. Returns 1 if a < b. */
+static int gxbp_fixed_difference(gxb_limb *r, const gxb_fixed *a, const gxb_fixed *b) {
+    gxb_limb borrow = 0;
+    uint32_t i;
+    for (i = 0; i < GXB_FIXED_LIMBS; i++) {
+        const gxb_limb x = a->d[i], t = (gxb_limb)(x - b->d[i]);
+        r[i] = (gxb_limb)(t - borrow);
+        borrow = (gxb_limb)((x < b->d[i]) | (t < borrow));
+    }
+    return gxbp_fixed_absolute(r, GXB_FIXED_LIMBS);
+}
+
+/* r += p q, or r -= p q, in two's complement; limbs: n of p, GXB_FIXED_LIMBS of q, as many as of both of r */
+static void gxbp_fixed_add_product(gxb_limb *r, const gxb_limb *p, uint32_t n, const gxb_limb *q, int negative) {
+    gxb_limb product[3 * GXB_FIXED_LIMBS], carry = 0;
+    uint32_t i, j;
+    for (i = 0; i < n; i++) product[i] = 0;
+    for (j = 0; j < GXB_FIXED_LIMBS; j++) {
+        carry = 0;
+        for (i = 0; i < n; i++) product[i + j] = gxbp_multiply(p[i], q[j], product[i + j], carry, &carry);
+        product[n + j] = carry;
+    }
+    carry = 0;
+    for (i = 0; i < n + GXB_FIXED_LIMBS; i++) {
+        const gxb_limb x = r[i], y = (gxb_limb)(product[i] + carry);
+        const gxb_limb over = (gxb_limb)(y < carry);
+        r[i] = (gxb_limb)(negative ? x - y : x + y);
+        carry = (gxb_limb)(over | (negative ? x < y : r[i] < x));
+    }
+}
+
+/* Differences are below 2^185, minors below 2^371 and the determinant below 2^558, which fit in 192, 384, 576 bits. */
+GXFEM_API double gxb_fixed_determinant(const gxb_fixed o[3], const gxb_fixed a[3], const gxb_fixed b[3],
+                                       const gxb_fixed c[3]) {
+    gxb_limb d[3][3][GXB_FIXED_LIMBS], minor[2 * GXB_FIXED_LIMBS], total[3 * GXB_FIXED_LIMBS];
+    int negative[3][3];
+    uint32_t k;
+    gxb_num r;
+    for (k = 0; k < 3; k++) {
+        negative[0][k] = gxbp_fixed_difference(d[0][k], &a[k], &o[k]);
+        negative[1][k] = gxbp_fixed_difference(d[1][k], &b[k], &o[k]);
+        negative[2][k] = gxbp_fixed_difference(d[2][k], &c[k], &o[k]);
+    }
+    memset(total, 0, sizeof total);
+    for (k = 0; k < 3; k++) {
+        const uint32_t i = (k + 1) % 3, j = (k + 2) % 3;
+        int sign;
+        memset(minor, 0, sizeof minor);
+        gxbp_fixed_add_product(minor, d[1][i], GXB_FIXED_LIMBS, d[2][j], negative[1][i] ^ negative[2][j]);
+        gxbp_fixed_add_product(minor, d[1][j], GXB_FIXED_LIMBS, d[2][i], 1 ^ negative[1][j] ^ negative[2][i]);
+        sign = gxbp_fixed_absolute(minor, 2 * GXB_FIXED_LIMBS);
+        gxbp_fixed_add_product(total, minor, 2 * GXB_FIXED_LIMBS, d[0][k], sign ^ negative[0][k]);
+    }
+    r.sign = gxbp_fixed_absolute(total, 3 * GXB_FIXED_LIMBS) ? -1 : 1;
+    r.exp = 0;
+    r.n = 3 * GXB_FIXED_LIMBS;
+    r.d = total;
+    gxbp_num_trim(&r);
+    return gxb_num_to_double(&r) * gxbp_power(-3 * GXB_FIXED_BITS);
+}
+
+/* The number, which is from 0 to 1, cut off below 2^-184 */
+static GXBP_COLD void gxbp_fixed_set(gxb_fixed *r, const gxb_num *a) {
+    uint32_t i;
+    memset(r, 0, sizeof *r);
+    for (i = 0; i < a->n; i++) {
+        /* the limb's lowest bit, counted from one limb below r's */
+        const int bit = (a->exp + (int)i + 1) * GXB_LIMB_BITS + GXB_FIXED_BITS, word = bit / GXB_LIMB_BITS,
+                  off = bit % GXB_LIMB_BITS;
+        if (bit <= 0) continue;
+        if (word > 0) r->d[word - 1] |= (gxb_limb)(a->d[i] << off);
+        if (off > 0 && word < GXB_FIXED_LIMBS) r->d[word] |= (gxb_limb)(a->d[i] >> (GXB_LIMB_BITS - off));
+    }
+}
+
 /* r += factor * a, for a factor of 1 or -1 */
 static GXBP_COLD void gxbp_num_increase(gxb_num *r, const gxb_num *a, int factor) {
     GXB_NUM(sum);
@@ -1183,15 +1290,20 @@ static GXBP_COLD void gxbp_num_increase(gxb_num *r, const gxb_num *a, int factor
     gxbp_num_copy(r, &sum, 1);
 }
 
-/* r = num / den with a relative error below 2^-180. Each of four steps adds the quotient of the remainder, 50 bits.
-   num is overwritten. */
-static GXBP_COLD void gxbp_num_divide(gxb_num *r, gxb_num *num, const gxb_num *den) {
+/* r = num / den with a relative error below 2^(-45 steps), for at most 16 steps. Each adds the quotient of the
+   remainder, 50 bits. A remainder below 2^(-48 steps) of num is left, so that r has at most 48 steps + 58 bits. num is
+   overwritten, and becomes no longer than the longer of num and den with one limb more. */
+static GXBP_COLD void gxbp_num_divide(gxb_num *r, gxb_num *num, const gxb_num *den, int steps) {
     GXB_NUM(q);
     GXB_NUM(t);
-    int step;
+    int step, first = 0, power;
     gxb_num_set(r, 0, 0);
-    for (step = 0; step < 4 && num->sign != 0; step++) {
+    for (step = 0; step < steps && num->sign != 0; step++) {
         gxb_num_set(&q, gxb_num_ratio(num, den), 0);
+        if (q.sign == 0) return;
+        (void)gxbp_num_mantissa(&q, &power);
+        if (step == 0) first = power;
+        if (power < first - 48 * steps) return;
         gxbp_num_increase(r, &q, 1);
         gxb_num_mul(&t, &q, den);
         gxbp_num_increase(num, &t, -1);
@@ -1225,10 +1337,17 @@ static GXBP_RARE void gxbp_num_cross(gxb_num r[3], const gxb_num a[3], const gxb
     gxbp_num_det2(&r[2], &a[0], &b[1], &a[1], &b[0]);
 }
 
-/* A vector of numbers with its limbs. */
+/* Room for polynomials of this degree in coordinates of the frame. These are integers times 2^-180, below 2^129. The
+   polynomials here have coefficients below 2^2.2 for each degree, so below 2^(131.2 degree), and bits down to
+   2^(-180 degree): 311.2 bits for each degree. A number may begin and end within a limb, and a sum or a product have a
+   limb more until it is trimmed. */
+#define GXBP_LIMBS(degree) ((5 * (degree) + 4) * (64 / GXB_LIMB_BITS))
+
+/* Four numbers with their limbs: coordinates and weight of a point, at most of degree 7 (three planes), or normal and
+   distance of a plane, degrees 2 and 3. Or differences of any finite doubles, 2099 bits. */
 typedef struct gxbp_vec {
     gxb_num c[4];
-    gxb_limb limbs[4][GXB_NUM_LIMBS];
+    gxb_limb limbs[4][GXBP_LIMBS(7)];
 } gxbp_vec;
 
 static GXBP_APART void gxbp_vec_init(gxbp_vec *v) {
@@ -1237,10 +1356,22 @@ static GXBP_APART void gxbp_vec_init(gxbp_vec *v) {
     for (k = 0; k < 4; k++) v->c[k].d = v->limbs[k];
 }
 
+/* Four numbers of any length: products of differences of any finite doubles, or of a point's coordinates */
+typedef struct gxbp_large {
+    gxb_num c[4];
+    gxb_limb limbs[4][GXB_NUM_LIMBS];
+} gxbp_large;
+
+static GXBP_APART void gxbp_large_init(gxbp_large *v) {
+    int k;
+    memset(v->c, 0, sizeof v->c);
+    for (k = 0; k < 4; k++) v->c[k].d = v->limbs[k];
+}
+
 /* r = a.(b x c) */
 static GXBP_COLD void gxbp_num_det3(gxb_num *r, const gxb_num a[3], const gxb_num b[3], const gxb_num c[3]) {
-    gxbp_vec normal;
-    gxbp_vec_init(&normal);
+    gxbp_large normal;
+    gxbp_large_init(&normal);
     gxbp_num_cross(normal.c, b, c);
     gxbp_num_dot(r, a, normal.c);
 }
@@ -1299,24 +1430,23 @@ static GXBP_COLD void gxbp_exact_line_plane(gxb_num point[4], const gxb_num p[4]
 /* Three planes by Cramer's rule: X = d1 n2 x n3 + d2 n3 x n1 + d3 n1 x n2, W = n1.(n2 x n3); degrees 7 and 6. */
 static GXBP_COLD void gxbp_exact_three_planes(gxb_num point[4], const gxb_num a[4], const gxb_num b[4],
                                               const gxb_num c[4]) {
-    gxbp_vec bc, ca, ab, row, d;
+    gxbp_vec bc, ca, ab;
+    gxb_num row[3], d[3]; /* have the limbs of others */
     int k;
     gxbp_vec_init(&bc);
     gxbp_vec_init(&ca);
     gxbp_vec_init(&ab);
-    gxbp_vec_init(&row);
-    gxbp_vec_init(&d);
     gxbp_num_cross(bc.c, b, c);
     gxbp_num_cross(ca.c, c, a);
     gxbp_num_cross(ab.c, a, b);
-    gxbp_num_copy(&d.c[0], &a[3], 1);
-    gxbp_num_copy(&d.c[1], &b[3], 1);
-    gxbp_num_copy(&d.c[2], &c[3], 1);
+    d[0] = a[3];
+    d[1] = b[3];
+    d[2] = c[3];
     for (k = 0; k < 3; k++) {
-        gxbp_num_copy(&row.c[0], &bc.c[k], 1);
-        gxbp_num_copy(&row.c[1], &ca.c[k], 1);
-        gxbp_num_copy(&row.c[2], &ab.c[k], 1);
-        gxbp_num_dot(&point[k], row.c, d.c);
+        row[0] = bc.c[k];
+        row[1] = ca.c[k];
+        row[2] = ab.c[k];
+        gxbp_num_dot(&point[k], row, d);
     }
     gxbp_num_dot(&point[3], a, bc.c);
     gxbp_make_weight_positive(point);
@@ -1781,12 +1911,14 @@ static int gxbp_filter_insphere(const double *const p[5]) {
 /* Degree 4: 140 limbs of 64 bits for any finite doubles. */
 static GXBP_COLD int gxbp_incircle_exact(const double *const p[4]) {
     gxbp_vec row[3];
+    gxbp_large square;
     GXB_NUM(r);
     int i;
     gxbp_exact_differences(row, p, 4, 2);
+    gxbp_large_init(&square);
     for (i = 0; i < 3; i++) {
-        gxbp_num_dot(&row[i].c[3], row[i].c, row[i].c);
-        row[i].c[2] = row[i].c[3];
+        gxbp_num_dot(&square.c[i], row[i].c, row[i].c);
+        row[i].c[2] = square.c[i];
     }
     gxbp_num_det3(&r, row[0].c, row[1].c, row[2].c);
     return r.sign;
@@ -1797,14 +1929,15 @@ static GXBP_COLD int gxbp_incircle_exact(const double *const p[4]) {
 static GXBP_COLD int gxbp_insphere_exact(const double *const p[5]) {
     gxbp_vec row[4];
     GXB_NUM(minor);
+    GXB_NUM(square);
     GXB_NUM(term);
     GXB_NUM(sum);
     int i;
     gxbp_exact_differences(row, p, 5, 3);
     for (i = 0; i < 4; i++) {
         gxbp_num_det3(&minor, row[i == 0].c, row[i <= 1 ? 2 : 1].c, row[i <= 2 ? 3 : 2].c);
-        gxbp_num_dot(&row[i].c[3], row[i].c, row[i].c);
-        gxb_num_mul(&term, &row[i].c[3], &minor);
+        gxbp_num_dot(&square, row[i].c, row[i].c);
+        gxb_num_mul(&term, &square, &minor);
         gxbp_num_increase(&sum, &term, i % 2 == 0 ? -1 : 1);
     }
     return sum.sign;
@@ -1882,13 +2015,12 @@ GXFEM_API void gxb_point_three_planes(gxb_point *point, const gxb_plane *a, cons
     point->plane[2] = c;
 }
 
-static GXBP_COLD void gxbp_plane_exact(gxbp_vec *v, const gxb_plane *plane) {
+static GXBP_COLD void gxbp_plane_exact(gxb_num v[4], const gxb_plane *plane) {
     gxbp_vec p, q, r;
     gxbp_vec_set(&p, plane->p);
     gxbp_vec_set(&q, plane->q);
     gxbp_vec_set(&r, plane->r);
-    gxbp_vec_init(v);
-    gxbp_exact_plane(v->c, p.c, q.c, r.c);
+    gxbp_exact_plane(v, p.c, q.c, r.c);
 }
 
 static GXBP_COLD void gxbp_point_exact(gxbp_vec *v, const gxb_point *point) {
@@ -1898,14 +2030,17 @@ static GXBP_COLD void gxbp_point_exact(gxbp_vec *v, const gxb_point *point) {
         return;
     }
     gxbp_vec_init(v);
-    gxbp_plane_exact(&a, point->plane[0]);
+    gxbp_vec_init(&a);
+    gxbp_plane_exact(a.c, point->plane[0]);
     if (point->plane[1] == NULL) {
         gxbp_vec_set(&b, point->p);
         gxbp_vec_set(&c, point->q);
         gxbp_exact_line_plane(v->c, b.c, c.c, a.c);
     } else {
-        gxbp_plane_exact(&b, point->plane[1]);
-        gxbp_plane_exact(&c, point->plane[2]);
+        gxbp_vec_init(&b);
+        gxbp_vec_init(&c);
+        gxbp_plane_exact(b.c, point->plane[1]);
+        gxbp_plane_exact(c.c, point->plane[2]);
         gxbp_exact_three_planes(v->c, a.c, b.c, c.c);
     }
 }
@@ -1922,7 +2057,8 @@ GXFEM_API int gxb_side(const gxb_point *point, const gxb_plane *plane) {
         GXB_NUM(r);
         gxbp_vec x, n;
         gxbp_point_exact(&x, point);
-        gxbp_plane_exact(&n, plane);
+        gxbp_vec_init(&n);
+        gxbp_plane_exact(n.c, plane);
         gxbp_exact_side(&r, x.c, n.c);
         return r.sign;
     }
@@ -1945,17 +2081,17 @@ GXFEM_API int gxb_compare(const gxb_point *a, const gxb_point *b, int axis) {
 
 /* |a b c| of the homogeneous coordinates i and j: degree 20 for three points of three planes */
 static GXBP_COLD int gxbp_orient_exact(const gxb_num a[4], const gxb_num b[4], const gxb_num c[4], int i, int j) {
-    gxbp_vec row, cofactor;
+    gxbp_large cofactor;
+    gxb_num row[3]; /* has the limbs of a */
     GXB_NUM(r);
-    gxbp_vec_init(&row);
-    gxbp_vec_init(&cofactor);
+    gxbp_large_init(&cofactor);
     gxbp_num_det2(&cofactor.c[0], &b[j], &c[3], &c[j], &b[3]);
     gxbp_num_det2(&cofactor.c[1], &c[i], &b[3], &b[i], &c[3]);
     gxbp_num_det2(&cofactor.c[2], &b[i], &c[j], &c[i], &b[j]);
-    gxbp_num_copy(&row.c[0], &a[i], 1);
-    gxbp_num_copy(&row.c[1], &a[j], 1);
-    gxbp_num_copy(&row.c[2], &a[3], 1);
-    gxbp_num_dot(&r, row.c, cofactor.c);
+    row[0] = a[i];
+    row[1] = a[j];
+    row[2] = a[3];
+    gxbp_num_dot(&r, row, cofactor.c);
     return r.sign;
 }
 
@@ -1979,7 +2115,8 @@ GXFEM_API int gxb_orient_in_plane(const gxb_point *a, const gxb_point *b, const 
     axis %= 3;
     sign = gxbp_filter_sign(n[axis], plane->filter.error);
     if (sign == 0) {
-        gxbp_plane_exact(&exact_n, plane);
+        gxbp_vec_init(&exact_n);
+        gxbp_plane_exact(exact_n.c, plane);
         for (k = 0; k < 3 && exact_n.c[axis].sign == 0; k++) axis = k;
         sign = exact_n.c[axis].sign;
     }
@@ -2504,6 +2641,7 @@ static gx_result gxbp_frame_exact(const gxb_store *store, const double x[3], gxb
         gxb_num_set(&b, store->origin[k], store->shift);
         if ((a.sign != 0 && (gxbp_num_mantissa(&a, &power), power + 52 < -128)) || (a.sign != 0 && power + 52 > 128))
             return GX_ERROR_RANGE;
+        if (b.sign != 0 && (gxbp_num_mantissa(&b, &power), power + 52 > 129)) return GX_ERROR_RANGE; /* far from a */
         gxb_num_sub(&v->c[k], &a, &b);
         if (v->c[k].sign != 0 && (gxbp_num_mantissa(&v->c[k], &power), power + 52 > 128)) return GX_ERROR_RANGE;
     }
@@ -2736,8 +2874,9 @@ static int gxbp_exact_sign(gxb_store *store, uint32_t kind, const uint32_t def[3
     return r.sign;
 }
 
-static int gxbp_side_of(gxb_store *store, const gxb_ball *ball, uint32_t kind, const uint32_t def[3], uint32_t point,
-                        uint32_t plane) {
+/* GXBP_UNKNOWN: neither definitions nor doubles tell. */
+static inline int gxbp_filtered_side(gxb_store *store, const gxb_ball *ball, uint32_t kind, const uint32_t def[3],
+                                     uint32_t point, uint32_t plane) {
     double bound, value;
     int sign;
     if (gxbp_incident(store, kind, def, point, plane)) return 0;
@@ -2747,8 +2886,13 @@ static int gxbp_side_of(gxb_store *store, const gxb_ball *ball, uint32_t kind, c
         sign = gxbp_filter_sign(value, bound);
         if (sign != 0) return sign;
     }
-    if (kind == GXB_THREE_PLANES && gxbp_incident_by_line(store, def, plane)) return 0;
-    return gxbp_exact_sign(store, kind, def, point, plane);
+    return kind == GXB_THREE_PLANES && gxbp_incident_by_line(store, def, plane) ? 0 : GXBP_UNKNOWN;
+}
+
+static int gxbp_side_of(gxb_store *store, const gxb_ball *ball, uint32_t kind, const uint32_t def[3], uint32_t point,
+                        uint32_t plane) {
+    const int sign = gxbp_filtered_side(store, ball, kind, def, point, plane);
+    return sign == GXBP_UNKNOWN ? gxbp_exact_sign(store, kind, def, point, plane) : sign;
 }
 
 static int gxbp_store_side(gxb_store *store, uint32_t point, uint32_t plane) {
@@ -3986,6 +4130,165 @@ GXFEM_API gx_result gxb_complex_open_element(gxb_complex *cx, uint32_t element) 
     return GX_OK;
 }
 
+/* >>pairs: numbers as sums of two doubles: about 100 bits, with bounds --------------------------------------------- */
+/* In: doubles. Out: sums and products as pairs of doubles, with bounds that hold as those of >>filter do.
+ *
+ * The sum of two doubles is their rounded sum and its error, which the six operations of gxbp_pair_sum find but for
+ * 2^-103 of the terms' sizes also where roundings are not to nearest [Boldo, Graillat, Muller, On the robustness of the
+ * 2Sum and Fast2Sum algorithms (2017)]; a product is that of halves of 26 and 27 bits, taken apart by their bits. What
+ * is left out or rounded in a sum or product of pairs is below 2^-100 of its terms' sizes; GXBP_PAIR_U has room for the
+ * rounding of the bounds too. Coordinates are below 2^16, so numbers of degree 9 below 2^180, their errors below 2^600
+ * even where nothing is known; GXBP_TINY stands for underflow.
+ */
+#define GXBP_PAIR_U     gxbp_power(-97)
+#define GXBP_PAIR_RANGE 16
+
+static gxbp_pair gxbp_pair_sum(double a, double b) {
+    gxbp_pair r;
+    double part;
+    r.high = gxbp_fence(a + b);
+    part = gxbp_fence(r.high - a);
+    r.low = gxbp_fence(gxbp_fence(a - gxbp_fence(r.high - part)) + gxbp_fence(b - part));
+    r.error = 0;
+    return r;
+}
+
+/* a + b, or a - b where sign is -1 */
+static gxbp_pair gxbp_pair_add(const gxbp_pair *a, const gxbp_pair *b, double sign) {
+    gxbp_pair r = gxbp_pair_sum(a->high, sign * b->high);
+    const double size = gxbp_abs(a->high) + gxbp_abs(b->high);
+    r = gxbp_pair_sum(r.high, gxbp_fence(r.low + (a->low + sign * b->low)));
+    r.error = a->error + b->error + GXBP_PAIR_U * size + GXBP_TINY;
+    return r;
+}
+
+static gxbp_pair gxbp_pair_mul(const gxbp_pair *a, const gxbp_pair *b) {
+    const double ah = gxbp_double(gxbp_bits(a->high) >> 27 << 27), al = gxbp_fence(a->high - ah);
+    const double bh = gxbp_double(gxbp_bits(b->high) >> 27 << 27), bl = gxbp_fence(b->high - bh);
+    const double p = gxbp_fence(a->high * b->high), size_a = gxbp_abs(a->high) + a->error;
+    double rest = gxbp_fence(gxbp_fence(ah * bh) - p);
+    gxbp_pair r;
+    rest = gxbp_fence(rest + gxbp_fence(ah * bl));
+    rest = gxbp_fence(rest + gxbp_fence(al * bh));
+    r = gxbp_pair_sum(p, gxbp_fence(rest + (al * bl + (a->high * b->low + a->low * b->high))));
+    r.error = size_a * b->error + gxbp_abs(b->high) * a->error + GXBP_PAIR_U * gxbp_abs(p) + GXBP_TINY;
+    return r;
+}
+
+/* a b - c d */
+static GXBP_APART gxbp_pair gxbp_pair_det2(const gxbp_pair *a, const gxbp_pair *b, const gxbp_pair *c,
+                                           const gxbp_pair *d) {
+    const gxbp_pair s = gxbp_pair_mul(a, b), t = gxbp_pair_mul(c, d);
+    return gxbp_pair_add(&s, &t, -1);
+}
+
+static gxbp_pair gxbp_pair_dot(const gxbp_pair a[3], const gxbp_pair b[3]) {
+    gxbp_pair r = gxbp_pair_mul(&a[0], &b[0]), t = gxbp_pair_mul(&a[1], &b[1]);
+    r = gxbp_pair_add(&r, &t, 1);
+    t = gxbp_pair_mul(&a[2], &b[2]);
+    return gxbp_pair_add(&r, &t, 1);
+}
+
+/* a / b, if both are known to 2^-54 of their own values: with the roundings of the high parts and of the quotient the
+   relative error is below 2^-50. */
+static int gxbp_pair_ratio(const gxbp_pair *a, const gxbp_pair *b, double *ratio) {
+    const double most = gxbp_power(-54);
+    if (!(a->error < most * gxbp_abs(a->high)) || !(b->error < most * gxbp_abs(b->high))) return 0;
+    *ratio = a->high / b->high;
+    return 1;
+}
+
+/* q - p. Where a coordinate is no double, or large: 0, with an error that makes every ratio fail */
+static void gxbp_pair_difference(gxbp_pair r[3], const gxb_ball *p, const gxb_ball *q) {
+    const int good =
+        p->error == 0 && q->error == 0 && gxbp_max(gxbp_max3(p->x), gxbp_max3(q->x)) < gxbp_power(GXBP_PAIR_RANGE);
+    int k;
+    for (k = 0; k < 3; k++) {
+        r[k] = gxbp_pair_sum(good ? q->x[k] : 0, good ? -p->x[k] : 0);
+        r[k].error = good ? GXBP_PAIR_U * (gxbp_abs(p->x[k]) + gxbp_abs(q->x[k])) : gxbp_power(4 * GXBP_PAIR_RANGE);
+    }
+}
+
+static const gxbp_pair *gxbp_pair_normal(gxb_complex *cx, uint32_t plane) {
+    const gxb_cplane *f = &cx->store.planes[plane];
+    const uint32_t slot = plane % GXBP_PAIR_NORMALS;
+    gxbp_pair *n = cx->pairs->normal[slot], a[3], b[3];
+    int i;
+    if (cx->pairs->plane[slot] == plane) return n;
+    cx->pairs->plane[slot] = plane;
+    gxbp_pair_difference(a, &cx->store.points[f->def[0]].ball, &cx->store.points[f->def[1]].ball);
+    if (f->along_axis) { /* a x e */
+        const uint32_t j = (f->def[2] + 1) % 3, k = (f->def[2] + 2) % 3;
+        n[j] = a[k];
+        n[k].high = -a[j].high;
+        n[k].low = -a[j].low;
+        n[k].error = a[j].error;
+        n[f->def[2]] = gxbp_pair_sum(0, 0);
+        return n;
+    }
+    gxbp_pair_difference(b, &cx->store.points[f->def[0]].ball, &cx->store.points[f->def[2]].ball);
+    for (i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        n[i] = gxbp_pair_det2(&a[j], &b[k], &a[k], &b[j]);
+    }
+    return n;
+}
+
+/* n.(x - base) for an explicit point */
+static gxbp_pair gxbp_pair_side(gxb_complex *cx, uint32_t point, uint32_t plane) {
+    const uint32_t slot = (plane * 31 + point) % GXBP_PAIR_SIDES;
+    gxbp_pairs *pairs = cx->pairs;
+    if (pairs->side_plane[slot] != plane || pairs->side_point[slot] != point) {
+        const gxbp_pair *n = gxbp_pair_normal(cx, plane);
+        const gxb_cplane *f = &cx->store.planes[plane];
+        gxbp_pair d[3];
+        gxbp_pair_difference(d, &cx->store.points[f->def[0]].ball, &cx->store.points[point].ball);
+        if (f->along_axis) { /* its normal has no component along the axis */
+            const uint32_t j = (f->def[2] + 1) % 3, k = (f->def[2] + 2) % 3;
+            const gxbp_pair s = gxbp_pair_mul(&n[j], &d[j]), t = gxbp_pair_mul(&n[k], &d[k]);
+            pairs->side[slot] = gxbp_pair_add(&s, &t, 1);
+        } else
+            pairs->side[slot] = gxbp_pair_dot(n, d);
+        pairs->side_plane[slot] = plane;
+        pairs->side_point[slot] = point;
+    }
+    return pairs->side[slot];
+}
+
+/* A side of a plane as pairs tell it, GXBP_UNKNOWN where they do not, of a point of two given points p, q and a plane,
+   with sides s and t of the latter and of the plane in question. The point is (t p - s q) / (t - s) for its own plane.
+ */
+static int gxbp_pair_line_side(gxb_complex *cx, const uint32_t def[3], uint32_t plane) {
+    const gxbp_pair p = gxbp_pair_side(cx, def[0], def[2]), q = gxbp_pair_side(cx, def[1], def[2]);
+    const gxbp_pair s = gxbp_pair_side(cx, def[0], plane), t = gxbp_pair_side(cx, def[1], plane);
+    const gxbp_pair value = gxbp_pair_det2(&q, &s, &p, &t), weight = gxbp_pair_add(&q, &p, -1);
+    const int sign = gxbp_filter_sign(value.high, value.error) * gxbp_filter_sign(weight.high, weight.error);
+    return sign == 0 ? GXBP_UNKNOWN : sign;
+}
+
+/* The same of a point x of three planes. With a point o of the plane in question, n_i.(x - o) is minus o's side s_i of
+   each of the three, so n.(x - o) = -(sum of s_i n.(n_j x n_k)) / n_0.(n_1 x n_2). */
+static int gxbp_pair_planes_side(gxb_complex *cx, const uint32_t def[3], uint32_t plane) {
+    const uint32_t o = cx->store.planes[plane].def[0];
+    gxbp_pair n[4][3], cross[3], dot, value = gxbp_pair_sum(0, 0), weight = value;
+    uint32_t i, k;
+    int sign;
+    for (i = 0; i < 4; i++) memcpy(n[i], gxbp_pair_normal(cx, i < 3 ? def[i] : plane), sizeof n[i]);
+    for (i = 0; i < 3; i++) {
+        const gxbp_pair *a = n[(i + 1) % 3], *b = n[(i + 2) % 3], side = gxbp_pair_side(cx, o, def[i]);
+        for (k = 0; k < 3; k++) {
+            const uint32_t x = (k + 1) % 3, y = (k + 2) % 3;
+            cross[k] = gxbp_pair_det2(&a[x], &b[y], &a[y], &b[x]);
+        }
+        if (i == 0) weight = gxbp_pair_dot(n[0], cross);
+        dot = gxbp_pair_dot(n[3], cross);
+        dot = gxbp_pair_mul(&side, &dot);
+        value = gxbp_pair_add(&value, &dot, 1);
+    }
+    sign = -gxbp_filter_sign(value.high, value.error) * gxbp_filter_sign(weight.high, weight.error);
+    return sign == 0 ? GXBP_UNKNOWN : sign;
+}
+
 /* >>clip: a triangle against the tree of an element ---------------------------------------------------------------- */
 /* In: a triangle and an element. Out: the polygon of the triangle that reaches each leaf. Touches the stack of
    polygons only. */
@@ -3994,8 +4297,13 @@ static uint32_t gxbp_face_plane(const gxb_complex *cx, uint32_t element, uint32_
     return cx->facets[cx->face_facet[cx->element_faces[4 * element + k]]].plane;
 }
 
+/* Exact coordinates of a corner are not kept, so pairs are asked first. */
 static int gxbp_corner_sign(gxb_complex *cx, const gxbp_corner *c, uint32_t plane) {
-    return gxbp_side_of(&cx->store, &c->ball, c->kind, c->def, c->point, plane);
+    int sign = gxbp_filtered_side(&cx->store, &c->ball, c->kind, c->def, c->point, plane);
+    if (sign == GXBP_UNKNOWN && c->point == GXB_NONE)
+        sign = c->kind == GXB_LINE_PLANE ? gxbp_pair_line_side(cx, c->def, plane)
+                                         : gxbp_pair_planes_side(cx, c->def, plane);
+    return sign == GXBP_UNKNOWN ? gxbp_exact_sign(&cx->store, c->kind, c->def, c->point, plane) : sign;
 }
 
 /* The point in which two carriers meet in the triangle's plane. */
@@ -4956,12 +5264,13 @@ static int gxbp_probe_misses(const gxbp_probe *probe, const double *const x[3]) 
 
 /* gxbp_ray_side for a probe: W (a_y b_z - a_z b_y) + Y (a_z - b_z) + Z (b_y - a_y) */
 static GXBP_COLD int gxbp_probe_side(const gxbp_probe *probe, const double a[3], const double b[3]) {
-    gxbp_vec p, q, row;
+    gxbp_vec p, q;
+    gxbp_large row;
     GXB_NUM(r);
     int k, sign;
     gxbp_vec_init(&p);
     gxbp_vec_init(&q);
-    gxbp_vec_init(&row);
+    gxbp_large_init(&row);
     for (k = 1; k < 3; k++) {
         gxb_num_set(&p.c[k], a[k], probe->shift);
         gxb_num_set(&q.c[k], b[k], probe->shift);
@@ -4977,14 +5286,15 @@ static GXBP_COLD int gxbp_probe_side(const gxbp_probe *probe, const double a[3],
 
 /* gxb_orient3d(a, b, c, probe) */
 static GXBP_COLD int gxbp_probe_orient(const gxbp_probe *probe, const double *const x[3]) {
-    gxbp_vec p[3], n;
+    gxbp_vec p[3];
+    gxbp_large n;
     GXB_NUM(r);
     int k, c;
     for (c = 0; c < 3; c++) {
         gxbp_vec_init(&p[c]);
         for (k = 0; k < 3; k++) gxb_num_set(&p[c].c[k], x[c][k], probe->shift);
     }
-    gxbp_vec_init(&n);
+    gxbp_large_init(&n);
     gxbp_exact_plane(n.c, p[0].c, p[1].c, p[2].c);
     gxbp_exact_side(&r, probe->exact.c, n.c);
     return -r.sign;
@@ -5007,130 +5317,6 @@ GXFEM_API int gxb_complex_winding(gxb_complex *cx, const uint32_t *points, size_
         if (gxbp_probe_orient(&probe, x) == side) winding += side;
     }
     return winding;
-}
-
-/* >>pairs: numbers as sums of two doubles: about 100 bits, with bounds --------------------------------------------- */
-/* In: doubles. Out: sums and products as pairs of doubles, with bounds that hold as those of >>filter do.
- *
- * The sum of two doubles is their rounded sum and its error, which the six operations of gxbp_pair_sum find but for
- * 2^-103 of the terms' sizes also where roundings are not to nearest [Boldo, Graillat, Muller, On the robustness of the
- * 2Sum and Fast2Sum algorithms (2017)]; a product is that of halves of 26 and 27 bits, taken apart by their bits. What
- * is left out or rounded in a sum or product of pairs is below 2^-100 of its terms' sizes; GXBP_PAIR_U has room for the
- * rounding of the bounds too. Coordinates are below 2^16, so numbers of degree 9 below 2^180, their errors below 2^600
- * even where nothing is known; GXBP_TINY stands for underflow.
- */
-#define GXBP_PAIR_U     gxbp_power(-97)
-#define GXBP_PAIR_RANGE 16
-
-static gxbp_pair gxbp_pair_sum(double a, double b) {
-    gxbp_pair r;
-    double part;
-    r.high = gxbp_fence(a + b);
-    part = gxbp_fence(r.high - a);
-    r.low = gxbp_fence(gxbp_fence(a - gxbp_fence(r.high - part)) + gxbp_fence(b - part));
-    r.error = 0;
-    return r;
-}
-
-/* a + b, or a - b where sign is -1 */
-static gxbp_pair gxbp_pair_add(const gxbp_pair *a, const gxbp_pair *b, double sign) {
-    gxbp_pair r = gxbp_pair_sum(a->high, sign * b->high);
-    const double size = gxbp_abs(a->high) + gxbp_abs(b->high);
-    r = gxbp_pair_sum(r.high, gxbp_fence(r.low + (a->low + sign * b->low)));
-    r.error = a->error + b->error + GXBP_PAIR_U * size + GXBP_TINY;
-    return r;
-}
-
-static gxbp_pair gxbp_pair_mul(const gxbp_pair *a, const gxbp_pair *b) {
-    const double ah = gxbp_double(gxbp_bits(a->high) >> 27 << 27), al = gxbp_fence(a->high - ah);
-    const double bh = gxbp_double(gxbp_bits(b->high) >> 27 << 27), bl = gxbp_fence(b->high - bh);
-    const double p = gxbp_fence(a->high * b->high), size_a = gxbp_abs(a->high) + a->error;
-    double rest = gxbp_fence(gxbp_fence(ah * bh) - p);
-    gxbp_pair r;
-    rest = gxbp_fence(rest + gxbp_fence(ah * bl));
-    rest = gxbp_fence(rest + gxbp_fence(al * bh));
-    r = gxbp_pair_sum(p, gxbp_fence(rest + (al * bl + (a->high * b->low + a->low * b->high))));
-    r.error = size_a * b->error + gxbp_abs(b->high) * a->error + GXBP_PAIR_U * gxbp_abs(p) + GXBP_TINY;
-    return r;
-}
-
-/* a b - c d */
-static GXBP_APART gxbp_pair gxbp_pair_det2(const gxbp_pair *a, const gxbp_pair *b, const gxbp_pair *c,
-                                           const gxbp_pair *d) {
-    const gxbp_pair s = gxbp_pair_mul(a, b), t = gxbp_pair_mul(c, d);
-    return gxbp_pair_add(&s, &t, -1);
-}
-
-static gxbp_pair gxbp_pair_dot(const gxbp_pair a[3], const gxbp_pair b[3]) {
-    gxbp_pair r = gxbp_pair_mul(&a[0], &b[0]), t = gxbp_pair_mul(&a[1], &b[1]);
-    r = gxbp_pair_add(&r, &t, 1);
-    t = gxbp_pair_mul(&a[2], &b[2]);
-    return gxbp_pair_add(&r, &t, 1);
-}
-
-/* a / b, if both are known to 2^-54 of their own values: with the roundings of the high parts and of the quotient the
-   relative error is below 2^-50. */
-static int gxbp_pair_ratio(const gxbp_pair *a, const gxbp_pair *b, double *ratio) {
-    const double most = gxbp_power(-54);
-    if (!(a->error < most * gxbp_abs(a->high)) || !(b->error < most * gxbp_abs(b->high))) return 0;
-    *ratio = a->high / b->high;
-    return 1;
-}
-
-/* q - p. Where a coordinate is no double, or large: 0, with an error that makes every ratio fail */
-static void gxbp_pair_difference(gxbp_pair r[3], const gxb_ball *p, const gxb_ball *q) {
-    const int good =
-        p->error == 0 && q->error == 0 && gxbp_max(gxbp_max3(p->x), gxbp_max3(q->x)) < gxbp_power(GXBP_PAIR_RANGE);
-    int k;
-    for (k = 0; k < 3; k++) {
-        r[k] = gxbp_pair_sum(good ? q->x[k] : 0, good ? -p->x[k] : 0);
-        r[k].error = good ? GXBP_PAIR_U * (gxbp_abs(p->x[k]) + gxbp_abs(q->x[k])) : gxbp_power(4 * GXBP_PAIR_RANGE);
-    }
-}
-
-static const gxbp_pair *gxbp_pair_normal(gxb_complex *cx, uint32_t plane) {
-    const gxb_cplane *f = &cx->store.planes[plane];
-    const uint32_t slot = plane % GXBP_PAIR_NORMALS;
-    gxbp_pair *n = cx->pairs->normal[slot], a[3], b[3];
-    int i;
-    if (cx->pairs->plane[slot] == plane) return n;
-    cx->pairs->plane[slot] = plane;
-    gxbp_pair_difference(a, &cx->store.points[f->def[0]].ball, &cx->store.points[f->def[1]].ball);
-    if (f->along_axis) { /* a x e */
-        const uint32_t j = (f->def[2] + 1) % 3, k = (f->def[2] + 2) % 3;
-        n[j] = a[k];
-        n[k].high = -a[j].high;
-        n[k].low = -a[j].low;
-        n[k].error = a[j].error;
-        return n;
-    }
-    gxbp_pair_difference(b, &cx->store.points[f->def[0]].ball, &cx->store.points[f->def[2]].ball);
-    for (i = 0; i < 3; i++) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        n[i] = gxbp_pair_det2(&a[j], &b[k], &a[k], &b[j]);
-    }
-    return n;
-}
-
-/* n.(x - base) for an explicit point */
-static gxbp_pair gxbp_pair_side(gxb_complex *cx, uint32_t point, uint32_t plane) {
-    const uint32_t slot = (plane * 31 + point) % GXBP_PAIR_SIDES;
-    gxbp_pairs *pairs = cx->pairs;
-    if (pairs->side_plane[slot] != plane || pairs->side_point[slot] != point) {
-        const gxbp_pair *n = gxbp_pair_normal(cx, plane);
-        const gxb_cplane *f = &cx->store.planes[plane];
-        gxbp_pair d[3];
-        gxbp_pair_difference(d, &cx->store.points[f->def[0]].ball, &cx->store.points[point].ball);
-        if (f->along_axis) { /* its normal has no component along the axis */
-            const uint32_t j = (f->def[2] + 1) % 3, k = (f->def[2] + 2) % 3;
-            const gxbp_pair s = gxbp_pair_mul(&n[j], &d[j]), t = gxbp_pair_mul(&n[k], &d[k]);
-            pairs->side[slot] = gxbp_pair_add(&s, &t, 1);
-        } else
-            pairs->side[slot] = gxbp_pair_dot(n, d);
-        pairs->side_plane[slot] = plane;
-        pairs->side_point[slot] = point;
-    }
-    return pairs->side[slot];
 }
 
 /* >>barycentric: barycentric coordinates of points in their elements ----------------------------------------------- */
@@ -5350,22 +5536,34 @@ GXFEM_API void gxb_complex_barycentric(gxb_complex *cx, uint32_t point, uint32_t
         if (lambda[k] < 0) lambda[k] = gxbp_exact_lambda(cx, point, element, k);
 }
 
+/* The four normals are cross products of two edges of their faces, so all nodes have the same distance from the
+   opposite face, six times the element's volume: one denominator serves all. */
 GXFEM_API GXBP_RARE void gxb_complex_barycentric_fine(gxb_complex *cx, uint32_t point, uint32_t element,
                                                       gxb_num lambda[4]) {
+    GXB_NUM(num);
+    GXB_NUM(den);
+    GXB_NUM(weight);
+    GXB_NUM(height);
     uint32_t k;
+    gxbp_distance(cx, cx->elements[4 * element], gxbp_face_plane(cx, element, 0), &height, NULL);
     for (k = 0; k < 4; k++) {
         const int known = gxbp_known_lambda(cx, point, element, k);
-        GXB_NUM(num);
-        GXB_NUM(den);
-        GXB_NUM(weight);
-        GXB_NUM(height);
         gxb_num_set(&lambda[k], known > 0 ? 1.0 : 0.0, 0);
         if (known >= 0) continue;
         gxbp_distance(cx, point, gxbp_face_plane(cx, element, k), &num, &weight);
-        gxbp_distance(cx, cx->elements[4 * element + k], gxbp_face_plane(cx, element, k), &height, NULL);
-        gxb_num_mul(&den, &weight, &height);
-        gxbp_num_divide(&lambda[k], &num, &den);
+        if (den.n == 0) gxb_num_mul(&den, &weight, &height);
+        den.sign = num.sign;
+        gxbp_num_divide(&lambda[k], &num, &den, 4);
     }
+}
+
+GXFEM_API GXBP_RARE void gxb_complex_barycentric_fixed(gxb_complex *cx, uint32_t point, uint32_t element,
+                                                       gxb_fixed lambda[4]) {
+    gxbp_vec fine;
+    uint32_t k;
+    gxbp_vec_init(&fine);
+    gxb_complex_barycentric_fine(cx, point, element, fine.c);
+    for (k = 0; k < 4; k++) gxbp_fixed_set(&lambda[k], &fine.c[k]);
 }
 
 /* >>pullback: points of space in moved elements -------------------------------------------------------------------- */
@@ -8870,14 +9068,15 @@ static void gxbp_drop_exits(gxb_boolean *b, gxbp_exits *exits) {
 static GXBP_COLD int gxbp_has_area_exactly(const double *p, const double *q, const double *r) {
     const double *x[3];
     gxb_plane plane;
-    gxbp_vec n;
+    gxbp_large n;
     int sign[3];
     x[0] = p;
     x[1] = q;
     x[2] = r;
     if (gxbp_normal_short(x, sign)) return sign[0] != 0 || sign[1] != 0 || sign[2] != 0;
     gxb_plane_init(&plane, p, q, r);
-    gxbp_plane_exact(&n, &plane);
+    gxbp_large_init(&n);
+    gxbp_plane_exact(n.c, &plane);
     return n.c[0].sign != 0 || n.c[1].sign != 0 || n.c[2].sign != 0;
 }
 
@@ -13065,12 +13264,13 @@ static GXBP_APART void gxbp_round_vertices(gxb_boolean *b) {
 
 static GXBP_COLD int gxbp_faces_exactly(gxb_boolean *b, uint32_t plane, const double *p, const double *q,
                                         const double *r) {
-    gxbp_vec store, given[3], n;
+    gxbp_vec store, given[3];
+    gxbp_large n;
     GXB_NUM(value);
     gxbp_vec_set(&given[0], p);
     gxbp_vec_set(&given[1], q);
     gxbp_vec_set(&given[2], r);
-    gxbp_vec_init(&n);
+    gxbp_large_init(&n);
     gxbp_exact_plane(n.c, given[0].c, given[1].c, given[2].c);
     gxbp_num_dot(&value, n.c, gxbp_exact_cplane(&b->store, plane, &store));
     return value.sign;
@@ -13762,9 +13962,12 @@ static GXBP_APART void gxbp_join_shells(gxb_boolean *b, uint32_t *parent, int32_
 
 /* >>volumes: volumes of shells ------------------------------------------------------------------------------------- */
 /* In: the output and its shells. Out: six times the volume of each shell, by sums of doubles with bounds, or from
-   coordinates of 180 bits where these bounds are too large. Touches the caller's arrays only. */
+   coordinates of 180 bits or 720 where these bounds are too large. Touches the caller's arrays only. */
 
-static GXBP_RARE void gxbp_fine_point(gxb_boolean *b, uint32_t point, gxbp_vec *fine) {
+/* Coordinates have 45 bits for each step of division. */
+enum { GXBP_FINE_BITS = 45, GXBP_FINE_STEPS = 4, GXBP_FINER_STEPS = 16 };
+
+static GXBP_RARE void gxbp_fine_point(gxb_boolean *b, uint32_t point, int steps, gxbp_vec *fine) {
     gxbp_vec store, rest;
     const gxb_num *x = gxbp_exact_cpoint(&b->store, point, b->store.points[point].kind == GXB_EXPLICIT ? fine : &store);
     int k;
@@ -13773,20 +13976,22 @@ static GXBP_RARE void gxbp_fine_point(gxb_boolean *b, uint32_t point, gxbp_vec *
     gxbp_vec_init(&rest);
     for (k = 0; k < 3; k++) {
         gxbp_num_copy(&rest.c[k], &x[k], 1);
-        gxbp_num_divide(&fine->c[k], &rest.c[k], &x[3]);
+        gxbp_num_divide(&fine->c[k], &rest.c[k], &x[3], steps);
     }
 }
 
-/* Coordinates of 180 bits of the result's vertices, each computed once. first: the first of a vertex's limbs, GXB_NONE
- * until they are computed */
+/* Coordinates of the result's vertices, each computed once for each number of steps. first: the first of a vertex's
+ * limbs. steps: 0 until they are computed */
 typedef struct gxbp_fine {
     uint32_t first;
+    int steps;
     gxb_num c[3];
 } gxbp_fine;
 typedef struct gxbp_fines {
     gxbp_fine *vertices;
     gxb_limb *limbs;
     uint32_t limb_count, limb_capacity;
+    int steps; /* at work */
 } gxbp_fines;
 
 static GXBP_RARE void gxbp_need_fine(gxb_boolean *b, gxbp_fines *fines, uint32_t vertex) {
@@ -13794,12 +13999,13 @@ static GXBP_RARE void gxbp_need_fine(gxb_boolean *b, gxbp_fines *fines, uint32_t
     gxbp_fine *v = &fines->vertices[vertex];
     gxbp_vec x;
     uint32_t k;
-    if (v->first != GXB_NONE) return;
-    gxbp_fine_point(b, point, &x);
+    if (v->steps == fines->steps) return;
+    gxbp_fine_point(b, point, fines->steps, &x);
     if (!gxbp_room(b, &fines->limbs, fines->limb_count, &fines->limb_capacity, sizeof *fines->limbs,
                    (size_t)x.c[0].n + x.c[1].n + x.c[2].n))
         return;
     v->first = fines->limb_count;
+    v->steps = fines->steps;
     for (k = 0; k < 3; k++) {
         v->c[k] = x.c[k];
         memcpy(fines->limbs + fines->limb_count, x.c[k].d, x.c[k].n * sizeof *fines->limbs);
@@ -13816,17 +14022,42 @@ static const gxb_num *gxbp_use_fine(gxbp_fines *fines, uint32_t vertex) {
     return v->c;
 }
 
-/* Six times the volume of a list of triangles, from coordinates of 180 bits. */
-static GXBP_RARE double gxbp_fine_volume(gxb_boolean *b, uint32_t t, const uint32_t *next, gxbp_fines *fines) {
-    GXB_NUM(total);
+/* |a| < 2^bits; |a| >= 2^(bits - GXB_LIMB_BITS) unless it is 0 */
+static int gxbp_num_bits(const gxb_num *a) { return (a->exp + (int)a->n) * GXB_LIMB_BITS; }
+
+/* total: the sum of det(p, q, r) over a list of triangles, six times what they enclose. Returns whether its relative
+   error is below 2^-53. Coordinates are below 2^size and have an error of 2^(size - 45 steps). A determinant is a sum
+   of six products of three, so it has an error of 2^5 times that of a coordinate times 2^(2 size). */
+static GXBP_RARE int gxbp_sum_fine(gxb_boolean *b, uint32_t t, const uint32_t *next, gxbp_fines *fines,
+                                   gxb_num *total) {
     GXB_NUM(term);
-    uint32_t k;
-    for (; t != GXB_NONE; t = next[t]) {
+    int size = -GXB_NUM_LIMBS * GXB_LIMB_BITS, bits;
+    uint32_t k, j, count = 0;
+    gxb_num_set(total, 0, 0);
+    for (; t != GXB_NONE; t = next[t], count++) {
         const uint32_t *v = b->out.triangles + 3 * (size_t)t;
         for (k = 0; k < 3; k++) gxbp_need_fine(b, fines, v[k]);
-        if (b->error != GX_OK) return 0;
+        if (b->error != GX_OK) return 1;
+        for (k = 0; k < 3; k++)
+            for (j = 0; j < 3; j++) {
+                bits = gxbp_num_bits(&fines->vertices[v[k]].c[j]);
+                if (fines->vertices[v[k]].c[j].sign != 0 && bits > size) size = bits;
+            }
         gxbp_num_det3(&term, gxbp_use_fine(fines, v[0]), gxbp_use_fine(fines, v[1]), gxbp_use_fine(fines, v[2]));
-        gxbp_num_increase(&total, &term, 1);
+        gxbp_num_increase(total, &term, 1);
+    }
+    bits = 5 + 3 * size - GXBP_FINE_BITS * fines->steps;
+    for (; count > 0; count >>= 1) bits++;
+    return total->sign != 0 && gxbp_num_bits(total) - GXB_LIMB_BITS > bits + 53;
+}
+
+/* Six times the volume of a list of triangles. Its sign tells solids from cavities, so it must be certain. */
+static GXBP_RARE double gxbp_fine_volume(gxb_boolean *b, uint32_t t, const uint32_t *next, gxbp_fines *fines) {
+    GXB_NUM(total);
+    fines->steps = GXBP_FINE_STEPS;
+    if (!gxbp_sum_fine(b, t, next, fines, &total)) {
+        fines->steps = GXBP_FINER_STEPS;
+        (void)gxbp_sum_fine(b, t, next, fines, &total);
     }
     return gxb_num_to_double(&total);
 }
@@ -13945,7 +14176,7 @@ static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, const uint32_t *parent
                                           int all) {
     const uint32_t count = b->out.triangle_count;
     const size_t vertices = b->out.point_count * sizeof(gxbp_fine), bytes = vertices + 2 * count * sizeof(uint32_t);
-    gxbp_fines fines = {NULL, NULL, 0, 0};
+    gxbp_fines fines = {NULL, NULL, 0, 0, 0};
     uint32_t t, *first, *next;
     fines.vertices = (gxbp_fine *)gxbp_allocate(&b->store.allocator, bytes);
     if (fines.vertices == NULL) {
@@ -13959,7 +14190,7 @@ static GXBP_COLD void gxbp_refine_volumes(gxb_boolean *b, const uint32_t *parent
         next[t] = first[parent[t]];
         first[parent[t]] = t;
     }
-    for (t = 0; t < b->out.point_count; t++) fines.vertices[t].first = GXB_NONE;
+    for (t = 0; t < b->out.point_count; t++) fines.vertices[t].steps = 0;
     for (t = 0; t < count && b->error == GX_OK; t++)
         if (parent[t] == t && (all || gxbp_is_rough(volume[t], error[t]))) {
             volume[t] = gxbp_fine_volume(b, first[t], next, &fines);
@@ -14901,6 +15132,7 @@ GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *b, gxb_statistics 
 #undef GXBP_TINY
 #undef GXBP_NO_BALL
 #undef GXBP_UNKNOWN
+#undef GXBP_LIMBS
 #undef GXBP_RESERVE
 #undef GXBP_ARRAY
 #undef GXBP_UNDO_ITEM

@@ -48,7 +48,8 @@
  *                 >>linearise Hessians, block diagonal
  *   multigrid:    >>galerkin coarse matrices | >>nesting those of affine copies | >>factor of the last level |
  *                 >>assembly the assembled matrix | >>smoother its step length | >>cycle the V-cycle
- *   changes:      >>edits lanes that a cut changes | >>renewal copies and components | >>update levels, all of it
+ *   changes:      >>edits lanes that a cut changes | >>affine-edits those of affine copies |
+ *                 >>renewal copies and components | >>update levels, all of it
  *   steps:        >>components momentum | >>points springs, contact | >>pairs two sides in contact | >>terms all that
  *                 acts at points | >>cg conjugate gradients | >>ageing of coarse matrices | >>sleep rest |
  *                 >>balance residual, start | >>search lengths | >>integrators BDF, midpoint | >>newton iterations,
@@ -95,7 +96,7 @@
  * it out until something touches it.
  *
  * WHAT IT DOES NOT DO. No cutting and no meshes: it sees elements of four copies. No search for contacts between
- * components: give points, planes, pairs and your own forces. No threads of its own: see gx_jobs; a task takes up to 90
+ * components: give points, planes, pairs and your own forces. No threads of its own: see gx_jobs; a task takes up to 32
  * kB of stack.
  *
  * LIMITS. poisson in [0, 0.5); beyond 0.49999 the Hessian's single precision shows. Copies and elements below 2^30.
@@ -309,6 +310,9 @@ typedef struct gxs_change {
     size_t element_count;
     const gxs_constraint *constraints; /* constraint_count: all constraints from now on */
     size_t constraint_count;
+    /* copy_count, as gxs_model.affine; NULL: none. Hidden vectors have origins like copies. One whose origin is no
+     * hidden vector begins with zeros: its copy becomes affine, and the elements around that copy are to be replaced */
+    const uint32_t *affine;
     uint64_t epoch; /* of the numbering from now on */
 } gxs_change;
 
@@ -354,7 +358,7 @@ typedef enum gxs_integrator {
 } gxs_integrator;
 
 #define GXS_POINT_OWN  4  /* copies for which a point has room itself */
-#define GXS_POINT_MOST 32 /* copies of a point at most */
+#define GXS_POINT_MOST 64 /* copies of a point at most */
 
 /* A material point: a node, a point of an element, a vertex of a skin. Its displacement is the sum of weight x that of
  * copy, over a span of count copies. Up to GXS_POINT_OWN stand in the point, which may then be kept and copied. More
@@ -401,10 +405,10 @@ enum {
  * get the same force, in opposite directions, so that pairs leave momentum alone. Where normal is along r they leave
  * angular momentum alone, too. Friction is Coulomb's: friction x the normal force at the step's start. It comes from
  * an elastic slip, which gxs_step_desc.pair_slips keeps: up to friction x force / stiffness, and at least
- * sticking_speed x dt, the sides stick. Not for GXS_MIDPOINT, which would gain energy, nor, so far, for models with
- * affine copies. The other side may be outside the model, as a rigid body is: then weights are 1 in sum, position is
- * that of the point at rest minus the place of the other side at the step's end, and way is how far that place has
- * gone within the step. */
+ * sticking_speed x dt, the sides stick. Not for GXS_MIDPOINT, which would gain energy. Hidden vectors of affine copies
+ * have no part in these sums. The other side may be outside the model, as a rigid body is: then weights are 1 in sum,
+ * position is that of the point at rest minus the place of the other side at the step's end, and way is how far that
+ * place has gone within the step. */
 typedef struct gxs_pair {
     gxs_point point;
     uint32_t flags;        /* GXS_PAIR_, or 0 */
@@ -430,7 +434,9 @@ typedef struct gxs_step_desc {
     uint64_t epoch;
     double mass_damping; /* Rayleigh's alpha, 1/s, 0 or more: force -alpha M v */
     uint32_t substeps;   /* GXS_EXPLICIT only: that many of dt; 0: as few as are cheap, for errors of about 1 % */
-    uint32_t newton_iterations; /* at most; 0: 1 */
+    /* at most. 0: 1; where copies are affine, in steps in time, as many as thin sheets need that are flung: until one
+     * moves affine copies by less than a hundredth of their motion in the step, 40 at most */
+    uint32_t newton_iterations;
     /* above 0: a quick step of BDF1, BDF2 or the midpoint rule, for about a third of the time of a usual one: so many
      * iterations of conjugate gradients at most (2 or 3 are enough in soft bodies) from where inertia leads, with the
      * Hessian there and the preconditioner of earlier steps. No line search, no measure of balance:
@@ -565,8 +571,9 @@ GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *mo
  * group or element), or a constraint is not allowed (its index). GX_ERROR_LIMIT: the change does not fit. Either the
  * matrix is assembled, mass is lumped, GXS_VOLUME_RATIO is used, empty lanes exceed a quarter of the elements by two
  * chunks, GXS_AUTOMATIC would now choose otherwise, a copy is held that was not or the other way round, two old copies
- * (origins without + 1) are the same, no element is left, an element that stays has lost a copy, or the model has
- * affine copies. After this and GX_ERROR_MEMORY no model is set: set one. On other errors the old model stays. */
+ * (origins without + 1) are the same, no element is left, an element that stays has lost a copy, the first affine copy
+ * comes or the last one goes. After this and GX_ERROR_MEMORY no model is set: set one. On other errors the old model
+ * stays. */
 GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *change, gx_failure *failure);
 /* Sets to 0 the rest times of copies whose state has been written since the last step. Their components then wake even
  * if another model is set before the next step, or another solver takes that step. Vectors use the present numbering;
@@ -649,6 +656,11 @@ extern "C" {
 /* Blocks of a chunk: 384 elements, whose nodes (about 150) stay in the first-level cache. */
 #define GXSP_CHUNK_BLOCKS 48
 #define GXSP_CHUNK        (GXSP_CHUNK_BLOCKS * GXSP_LANES)
+
+/* Passes copy the nodes of a chunk to the stack where there are no more than this: meshes of cubes have 125 to 165, cut
+ * into pieces of an element's size 300. Other chunks, of elements that share few nodes, are read copy by copy. */
+#define GXSP_NEAR         320
+#define GXSP_NEAR_NUMBERS (3 * GXSP_NEAR + 1)
 
 /* A residual below this (about 50 units in the last place) is rounding: no iteration can lower it. */
 #define GXSP_ROUNDING 1e-14
@@ -833,6 +845,9 @@ extern "C" {
 #define GXSP_NESTED_FROM 0.8f
 #define GXSP_WIDEST      8
 
+/* An update keeps that lattice while its factor takes at most so many times as much. */
+#define GXSP_NESTED_SLACK 2
+
 /* Elements of affine copies: blocks of one task; and of one round, after which the results are summed, so that these
  * take memory for one round only. Sums go by blocks, whatever the threads do. */
 #define GXSP_AFFINE_TASK  8
@@ -840,6 +855,13 @@ extern "C" {
 
 /* Iterations whose gain tells how far conjugate gradients are where copies are affine */
 #define GXSP_GAINS 3
+
+/* Thin sheets that are flung turn far in a step, and the first iterations stretch them. Where the caller gives no
+ * number, iterations go on until one moves affine copies by less than this share of their motion in the step; this many
+ * at most. Measured on slices of 1/15 and 1/5 of an element in steps of 17 and 33 ms: motion within 4 % of converged
+ * steps. Twice the share: 12 %. */
+#define GXSP_SETTLED     0.01
+#define GXSP_SHEETS_MOST 40
 
 /* Block-Jacobi takes less time than multigrid where inertia's mean share of the Hessian's diagonal blocks is larger
  * than this: few iterations, as the share bounds the spectrum from below. Measured on blocks of 2,000 to 8,000
@@ -912,15 +934,19 @@ extern "C" {
 #endif
 
 /* INLINE: compilers must know the column numbers. Columns that might be equal are not vectorised. COLD: seldom called,
- * kept out of line and compiled for size. */
+ * kept out of line and compiled for size. APART: kept out of line, so that its arrays are not in the frame of what
+ * calls it: a frame has at most 16 kB. */
 #if defined(__GNUC__) || defined(__clang__)
 #define GXSP_COLD   __attribute__((cold, noinline))
+#define GXSP_APART  __attribute__((noinline))
 #define GXSP_INLINE static inline __attribute__((always_inline))
 #elif defined(_MSC_VER)
 #define GXSP_COLD   __declspec(noinline)
+#define GXSP_APART  __declspec(noinline)
 #define GXSP_INLINE static __forceinline
 #else
 #define GXSP_COLD
+#define GXSP_APART
 #define GXSP_INLINE static inline
 #endif
 
@@ -1728,8 +1754,10 @@ typedef struct gxsp_affine {
     size_t count;  /* elements; 0: there are none */
     double length; /* m: hidden vectors are columns of A times this */
     gxsp_affine_block *blocks;
-    uint32_t block_count, group_count;
+    uint32_t *groups; /* block_count x GXSP_LANES: gxs_element.group; GXSP_NONE: the lane has no element */
+    uint32_t block_count, block_room, group_count, group_room;
     uint32_t round;        /* first block of the round under way: see GXSP_AFFINE_ROUND */
+    uint32_t slot_blocks;  /* blocks for which slots have room */
     uint32_t *place;       /* n: 4 x group + part; GXSP_NONE: a copy that is not affine. NULL: there are no groups */
     uint32_t (*member)[4]; /* group_count: vectors of a group */
     double (*slots)[3];    /* blocks of a round x 16 x GXSP_LANES: their results */
@@ -1738,9 +1766,12 @@ typedef struct gxsp_affine {
     double (*full)[10][9]; /* group_count: blocks of the parts p <= q, in the order of gxs_element.mass, by rows */
     float (*root)[78];     /* group_count: W by rows, lower triangle: the inverse of the 12x12 block is W^T W */
     uint32_t *hidden; /* by node of level 1: the first of its three hidden nodes, or GXSP_NONE. NULL: no multigrid */
-    float (*offset)[4][3]; /* group_count: (X_i - X_J) / length for each parent J */
-    double *block;         /* 9 per entry of level 1: what the elements here add */
-    double *entry;         /* factor of level 1, rows as in gxsp_factor */
+    uint32_t hidden_count;     /* nodes that hidden has */
+    float (*offset)[4][3];     /* group_count: (X_i - X_J) / length for each parent J */
+    double origin[3], spacing; /* of level 1's lattice before it was widened, m */
+    float stretch;             /* by which it was widened */
+    double *block;             /* 9 per entry of level 1: what the elements here add */
+    double *entry;             /* factor of level 1, rows as in gxsp_factor */
 } gxsp_affine;
 
 /* A block's elements in explicit steps. A lane without an element has zeros. */
@@ -1822,6 +1853,7 @@ typedef struct gxsp_problem {
     const double *given; /* the caller's displacement at the step's start, u_n */
     double start;        /* on the clock */
     gxs_scene scene;
+    double moved;       /* share of affine copies' motion in this step that the last iteration has made */
     int exact;          /* the linearisation is not projected */
     int indefinite;     /* conjugate gradients met negative curvature */
     int projected_only; /* the exact linearisation has proved indefinite in this step */
@@ -1905,6 +1937,9 @@ static const gxsp_column gxsp_copy_columns[] = {
     {GXSP_IN(vectors.right),                                    sizeof(gxsp_vector4), 0,          GXSP_BY_OWNER,   0},
     {GXSP_IN(smoother.renewed),                                 1,                    0,          GXSP_FOR_STEPS,  0},
     {GXSP_IN(coarse.displacement),                              3 * sizeof(double),   0,          GXSP_BY_OWNER,   1},
+    {GXSP_IN(affine.place),                                     sizeof(uint32_t),     0,          GXSP_BY_OWNER,   0},
+    {GXSP_IN(affine.sum),                                       3 * sizeof(double),   0,          GXSP_BY_OWNER,   0},
+    {GXSP_IN(affine.own),                                       6 * sizeof(double),   0,          GXSP_BY_OWNER,   0},
     {GXSP_IN(multigrid.levels) + offsetof(gxsp_level, parent),  4 * sizeof(uint32_t), 0,          GXSP_BY_OWNER,   1},
     {GXSP_IN(multigrid.levels) + offsetof(gxsp_level, weight),  4 * sizeof(float),    0,          GXSP_BY_OWNER,   1}};
 
@@ -3530,7 +3565,7 @@ static uint32_t gxsp_place_strips(gxsp_layout *layout, uint32_t blocks, uint32_t
 }
 
 /* The lane of each element of a chunk. nodes: of the elements; neighbours follow each other */
-static void gxsp_assign_lanes(gxsp_layout *layout, uint32_t (*nodes)[4], uint32_t count, uint32_t blocks) {
+static GXSP_APART void gxsp_assign_lanes(gxsp_layout *layout, uint32_t (*nodes)[4], uint32_t count, uint32_t blocks) {
     uint32_t lane, length, first = 0;
     layout->nodes = nodes;
     layout->count = count;
@@ -3576,8 +3611,8 @@ static int gxsp_lane_supports(const gxsp_chunk *chunk, uint32_t lane, int k) {
 }
 
 /* Puts elements of a chunk into their lanes. elements: sorted; nodes: theirs, numbered in the chunk */
-static void gxsp_fill_chunk(const gxsp_chunk *chunk, const gxs_model *model, const gxsp_sorted *elements,
-                            uint32_t (*nodes)[4], uint32_t count) {
+static GXSP_APART void gxsp_fill_chunk(const gxsp_chunk *chunk, const gxs_model *model, const gxsp_sorted *elements,
+                                       uint32_t (*nodes)[4], uint32_t count) {
     gxsp_layout layout;
     uint32_t placed[GXSP_CHUNK][4], lane;
     int k;
@@ -3755,35 +3790,50 @@ static int gxsp_is_affine(const gxs_model *model, const gxs_element *element) {
     return 0;
 }
 
-/* Is a vector one of the hidden ones of an affine copy? A translation does not move those. */
 /* Is the mass that of each copy's row, for the model or for the step at work? */
 static inline int gxsp_is_lumped(const gxsp_system *system) { return system->model.lumped_mass || system->state.quick; }
 
-static inline int gxsp_is_hidden(const gxsp_system *system, size_t copy) {
-    const uint32_t *place = system->affine.place;
-    return place && place[copy] != GXSP_NONE && (place[copy] & 3) > 0;
+/* Is a vector one of the hidden ones of an affine copy? A translation does not move those. affine: NULL: none is */
+static inline int gxsp_hides(const gxsp_affine *affine, size_t vector) {
+    const uint32_t *place = affine ? affine->place : NULL;
+    return place && place[vector] != GXSP_NONE && (place[vector] & 3) > 0;
 }
+
+static inline int gxsp_is_hidden(const gxsp_system *system, size_t copy) { return gxsp_hides(&system->affine, copy); }
 
 static inline int gxsp_is_grouped(const gxsp_system *system, size_t copy) {
     return system->affine.place && system->affine.place[copy] != GXSP_NONE;
 }
 
-/* Groups. Hidden vectors take over the rest position of their copy. */
-static void gxsp_groups_make(gxsp_system *system, const gxs_model *model) {
+/* Room for so many groups. What they had is lost. */
+static void gxsp_groups_room(gxsp_system *system, uint32_t count) {
+    gxsp_affine *affine = &system->affine;
+    if (count <= affine->group_room) return;
+    affine->group_room = affine->group_room > 0 ? (uint32_t)gxsp_room(count) : count;
+    affine->member =
+        (uint32_t(*)[4])gxsp_grow(&system->pool, affine->member, 0, affine->group_room, sizeof *affine->member);
+    affine->full =
+        (double(*)[10][9])gxsp_grow(&system->pool, affine->full, 0, affine->group_room, sizeof *affine->full);
+    affine->root = (float(*)[78])gxsp_grow(&system->pool, affine->root, 0, affine->group_room, sizeof *affine->root);
+}
+
+static uint32_t gxsp_count_groups(const uint32_t *affine, size_t copies) {
+    uint32_t count = 0;
+    size_t i;
+    for (i = 0; i < copies; i++) count += affine[i] != GXS_NOT_AFFINE;
+    return count;
+}
+
+/* Groups; there is room. Hidden vectors take over the rest position of their copy. first: n, as gxs_model.affine */
+static void gxsp_groups_make(gxsp_system *system, const uint32_t *first) {
     gxsp_affine *affine = &system->affine;
     size_t i, k;
     uint32_t group = 0;
-    for (i = 0; i < system->model.n; i++) affine->group_count += model->affine[i] != GXS_NOT_AFFINE;
-    if (affine->group_count == 0) return;
-    affine->length = model->affine_length;
-    affine->place = (uint32_t *)gxsp_take(&system->pool, system->model.n, sizeof(uint32_t));
-    affine->member = (uint32_t(*)[4])gxsp_take(&system->pool, affine->group_count, sizeof *affine->member);
-    if (system->pool.failed) return;
     memset(affine->place, 0xff, system->model.n * sizeof *affine->place);
     for (i = 0; i < system->model.n; i++) {
-        if (model->affine[i] == GXS_NOT_AFFINE) continue;
+        if (first[i] == GXS_NOT_AFFINE) continue;
         for (k = 0; k < 4; k++) {
-            const uint32_t vector = k == 0 ? (uint32_t)i : model->affine[i] + (uint32_t)k - 1;
+            const uint32_t vector = k == 0 ? (uint32_t)i : first[i] + (uint32_t)k - 1;
             affine->member[group][k] = vector;
             affine->place[vector] = 4 * group + (uint32_t)k;
             if (k > 0 && system->model.positions)
@@ -3792,6 +3842,17 @@ static void gxsp_groups_make(gxsp_system *system, const gxs_model *model) {
         }
         group++;
     }
+    affine->group_count = group;
+}
+
+/* The groups of a new model */
+static void gxsp_groups_begin(gxsp_system *system, const gxs_model *model) {
+    const uint32_t count = gxsp_count_groups(model->affine, system->model.n);
+    if (count == 0) return;
+    system->affine.length = model->affine_length;
+    system->affine.place = (uint32_t *)gxsp_take(&system->pool, system->model.n, sizeof(uint32_t));
+    gxsp_groups_room(system, count);
+    if (!system->pool.failed) gxsp_groups_make(system, model->affine);
 }
 
 /* Shape functions at the four points of an element: x_p = c + L t_p, with L L^T the covariance of its mass. They
@@ -3857,11 +3918,19 @@ static void gxsp_affine_fill(gxsp_system *system, const gxs_element *element, gx
     }
 }
 
-/* Row sums of the mass at hidden vectors, int rho N_i (x - X_i) / length: gravity acts on them by these */
-static void gxsp_affine_lump(gxsp_system *system, const gxsp_affine_block *block, int l) {
+/* Row sum of the mass of a lane's element at corner k: the four points have equal weights */
+static double gxsp_affine_mass(const gxsp_affine_block *block, int l, int k) {
+    return block->rest.mass[l] *
+           (block->shape[0][k][l] + block->shape[1][k][l] + block->shape[2][k][l] + block->shape[3][k][l]);
+}
+
+/* Row sums of the mass at hidden vectors, int rho N_i (x - X_i) / length: gravity acts on them by these. touched: those
+ * of these copies; NULL: all */
+static void gxsp_affine_lump(gxsp_system *system, const gxsp_affine_block *block, int l, const uint8_t *touched) {
     int i, j, k, p;
     for (i = 0; i < 4; i++)
-        for (k = 0; k < 3 && block->vector[4 + 3 * i][l] != GXSP_NONE; k++) {
+        for (k = 0; k < 3 && block->vector[4 + 3 * i][l] != GXSP_NONE && (!touched || touched[block->vector[i][l]]);
+             k++) {
             double sum = 0;
             for (p = 0; p < 4; p++) {
                 double way = 0; /* (x - X_i) / (4 length) at the point */
@@ -3874,6 +3943,17 @@ static void gxsp_affine_lump(gxsp_system *system, const gxsp_affine_block *block
         }
 }
 
+/* A block without elements; there is room */
+static gxsp_affine_block *gxsp_affine_open(gxsp_system *system, uint32_t b, gxs_material_kind kind) {
+    gxsp_affine_block *block = &system->affine.blocks[b];
+    memset(block, 0, sizeof *block);
+    block->kind = kind;
+    memset(block->vector, 0xff, sizeof block->vector);
+    memset(system->affine.groups + (size_t)b * GXSP_LANES, 0xff, GXSP_LANES * sizeof(uint32_t));
+    if (kind == GXS_CUSTOM) block->general = (gxsp_general *)gxsp_take(&system->pool, 4, sizeof(gxsp_general));
+    return block;
+}
+
 /* Blocks of the elements: those of one kind together. order: elements of each kind, in the caller's order */
 static void gxsp_affine_blocks(gxsp_system *system, const gxs_model *model, const uint32_t *elements) {
     gxsp_affine *affine = &system->affine;
@@ -3881,33 +3961,31 @@ static void gxsp_affine_blocks(gxsp_system *system, const gxs_model *model, cons
     int kind, l, k;
     for (e = 0; e < affine->count; e++) count[model->materials[model->elements[elements[e]].material].kind]++;
     for (kind = 0; kind <= GXS_CUSTOM; kind++) affine->block_count += (count[kind] + GXSP_LANES - 1) / GXSP_LANES;
+    affine->block_room = affine->block_count;
     affine->blocks = (gxsp_affine_block *)gxsp_take(&system->pool, affine->block_count, sizeof *affine->blocks);
-    if (system->pool.failed) return;
-    for (kind = 0; kind <= GXS_CUSTOM; kind++)
+    affine->groups = (uint32_t *)gxsp_take(&system->pool, (size_t)affine->block_count * GXSP_LANES, sizeof(uint32_t));
+    for (kind = 0; kind <= GXS_CUSTOM && !system->pool.failed; kind++)
         for (e = first = 0; first < count[kind]; b++) {
-            gxsp_affine_block *block = &affine->blocks[b];
-            block->kind = (gxs_material_kind)kind;
-            memset(block->vector, 0xff, sizeof block->vector);
-            if (kind == GXS_CUSTOM) block->general = (gxsp_general *)gxsp_take(&system->pool, 4, sizeof(gxsp_general));
+            gxsp_affine_block *block = gxsp_affine_open(system, b, (gxs_material_kind)kind);
             for (l = 0; l < GXSP_LANES && first < count[kind]; l++, first++, e++) {
                 while ((int)model->materials[model->elements[elements[e]].material].kind != kind) e++;
+                affine->groups[(size_t)b * GXSP_LANES + (size_t)l] = model->elements[elements[e]].group;
                 gxsp_affine_fill(system, &model->elements[elements[e]], block, l);
-                gxsp_affine_lump(system, block, l);
+                gxsp_affine_lump(system, block, l, NULL);
             }
             for (k = l; k < GXSP_LANES; k++) /* a valid material of this kind */
                 block->rest.material[k] = block->rest.material[0];
         }
 }
 
-/* Memory for results of passes */
+/* Memory for results of a round of blocks */
 static void gxsp_affine_results(gxsp_system *system) {
     gxsp_affine *affine = &system->affine;
-    const size_t blocks = affine->block_count < GXSP_AFFINE_ROUND ? affine->block_count : GXSP_AFFINE_ROUND;
-    affine->slots = (double(*)[3])gxsp_take(&system->pool, blocks * 16 * GXSP_LANES, sizeof *affine->slots);
-    affine->sum = (double(*)[3])gxsp_take(&system->pool, system->model.n, sizeof *affine->sum);
-    affine->own = (double(*)[6])gxsp_take(&system->pool, system->model.n, sizeof *affine->own);
-    affine->full = (double(*)[10][9])gxsp_take(&system->pool, affine->group_count, sizeof *affine->full);
-    affine->root = (float(*)[78])gxsp_take(&system->pool, affine->group_count, sizeof *affine->root);
+    const uint32_t blocks = affine->block_count < GXSP_AFFINE_ROUND ? affine->block_count : GXSP_AFFINE_ROUND;
+    if (blocks <= affine->slot_blocks) return;
+    affine->slots = (double(*)[3])gxsp_grow(&system->pool, affine->slots, 0, (size_t)blocks * 16 * GXSP_LANES,
+                                            sizeof *affine->slots);
+    affine->slot_blocks = blocks;
 }
 
 /* Divides the model's elements: those with an affine corner come here, `plain` gets the others. Both lists are in
@@ -3934,7 +4012,9 @@ static void gxsp_affine_make(gxsp_system *system, gxsp_pool *scratch, const gxs_
     plain->elements = others;
     plain->element_count = system->model.element_count = count;
     gxsp_affine_blocks(system, model, elements);
-    if (!system->pool.failed) gxsp_affine_results(system);
+    gxsp_affine_results(system);
+    system->affine.sum = (double(*)[3])gxsp_take(&system->pool, system->model.n, sizeof *system->affine.sum);
+    system->affine.own = (double(*)[6])gxsp_take(&system->pool, system->model.n, sizeof *system->affine.own);
 }
 
 /* Joins the vectors of a group. forest: n */
@@ -4257,6 +4337,9 @@ static void gxsp_copy_direction(const gxsp_pass *pass, uint32_t copy, double *GX
  * idea, one level up). Values between lattice points are linear on the six tetrahedra around a cell's diagonal:
  * at most four weights, exact for affine fields. */
 
+/* A coordinate in spacings of a lattice. Keeps lattice planes off those of the mesh */
+static float gxsp_place(double x, double origin, double spacing) { return (float)((x - origin) / spacing) + 0.31f; }
+
 /* Rest positions in spacings of the first lattice: GXSP_SPACING edges of an average whole element. Returns
  * the spacing; 0: there is no lattice. */
 static double gxsp_find_places(const gxsp_system *system, const gxs_model *model, float (*to)[3]) {
@@ -4275,10 +4358,8 @@ static double gxsp_find_places(const gxsp_system *system, const gxs_model *model
     spacing = GXSP_SPACING * cbrt(5 * volume / (double)counted); /* five elements to a cube */
     for (i = 0; i < system->model.n; i++)
         for (k = 0; k < 3; k++) {
-            double place = (system->model.positions[3 * i + k] - system->model.positions[k]) / spacing;
-            if (!(fabs(place) < 1e6)) /* single precision could not hold it */
-                return 0;
-            to[i][k] = (float)place + 0.31f; /* keeps lattice planes off those of the mesh */
+            to[i][k] = gxsp_place(system->model.positions[3 * i + k], system->model.positions[k], spacing);
+            if (!(fabs((double)to[i][k]) < 1e6)) return 0; /* single precision could not hold it */
         }
     return spacing;
 }
@@ -4673,36 +4754,39 @@ static uint32_t gxsp_nested_parents(const gxsp_system *system, uint32_t vector, 
     return count;
 }
 
-/* Numbers the hidden nodes, which follow the count others, and finds the offsets of affine copies from their parents.
- * place: n x 3, in spacings of the lattice; transfer: as gxsp_transfer_end has left it. Returns the number of nodes. */
-static uint32_t gxsp_nested_nodes(gxsp_system *system, float (*place)[3], const gxsp_transfer *transfer, double spacing,
-                                  uint32_t count) {
+/* Gives hidden nodes, from number `nodes` on, to the parents of affine copies that have none. hidden: by node, count of
+ * them. Returns the number of nodes. */
+static uint32_t gxsp_nested_nodes(gxsp_system *system, uint32_t count, uint32_t nodes) {
     gxsp_affine *affine = &system->affine;
-    gxsp_level points; /* lattice points of the nodes */
-    uint32_t group, nodes = count;
-    int k, a;
-    memset(&points, 0, sizeof points);
-    affine->hidden = (uint32_t *)gxsp_take(&system->multigrid.pool, count, sizeof(uint32_t));
-    affine->offset = (float(*)[4][3])gxsp_take(&system->multigrid.pool, affine->group_count, sizeof *affine->offset);
-    points.place = (int32_t(*)[3])gxsp_take(&system->multigrid.pool, count, sizeof *points.place);
-    if (system->multigrid.pool.failed) return 0;
-    gxsp_transfer_places(&system->multigrid.levels[0], transfer, &points);
-    memset(affine->hidden, 0xff, count * sizeof *affine->hidden);
-    for (group = 0; group < affine->group_count; group++) {
-        const uint32_t copy = affine->member[group][0];
+    uint32_t group;
+    int k;
+    for (group = 0; group < affine->group_count; group++)
         for (k = 0; k < 4; k++) {
-            const uint32_t parent = system->multigrid.levels[0].parent[copy][k];
-            if (parent == GXSP_NONE) continue;
-            if (affine->hidden[parent] == GXSP_NONE) {
-                affine->hidden[parent] = nodes;
-                nodes += 3;
-            }
-            for (a = 0; a < 3; a++)
-                affine->offset[group][k][a] =
-                    (float)(((double)place[copy][a] - points.place[parent][a]) * spacing / affine->length);
+            const uint32_t parent = system->multigrid.levels[0].parent[affine->member[group][0]][k];
+            if (parent == GXSP_NONE || affine->hidden[parent] != GXSP_NONE) continue;
+            affine->hidden[parent] = nodes;
+            nodes += 3;
         }
-    }
+    affine->hidden_count = count;
     return nodes;
+}
+
+/* Offsets of affine copies from their parents, whose places are known */
+static void gxsp_nested_offsets(gxsp_system *system) {
+    gxsp_affine *affine = &system->affine;
+    const gxsp_level *fine = &system->multigrid.levels[0];
+    uint32_t group;
+    int k, a;
+    for (group = 0; group < affine->group_count; group++)
+        for (k = 0; k < 4; k++)
+            for (a = 0; a < 3; a++) {
+                const uint32_t copy = affine->member[group][0], parent = fine->parent[copy][k];
+                const double x = system->model.positions[3 * (size_t)copy + (size_t)a];
+                const float place = gxsp_place(x, affine->origin[a], affine->spacing) / affine->stretch;
+                if (parent == GXSP_NONE) continue;
+                affine->offset[group][k][a] = (float)(((double)place - fine[1].place[parent][a]) *
+                                                      ((double)affine->stretch * affine->spacing) / affine->length);
+            }
 }
 
 /* Adds the clusters that the elements join. */
@@ -4732,6 +4816,13 @@ static int gxsp_compare_keys(const void *a, const void *b) {
     return (p > q) - (p < q);
 }
 
+/* Has an element a coarse node that is dirty? */
+static int gxsp_nested_dirty(const gxsp_system *system, const gxsp_affine_block *block, int l, const uint8_t *dirty) {
+    uint32_t bases[16], i, count = gxsp_nested_bases(system, block, l, bases);
+    for (i = 0; i < count && !dirty[bases[i]]; i++) {}
+    return i < count;
+}
+
 /* Lists the entries of a coarse node and another one, or itself, with their hidden nodes. */
 static void gxsp_nested_entries(const uint32_t *hidden, uint32_t p, uint32_t q, gxsp_list *list) {
     const uint32_t some = hidden[p] == GXSP_NONE ? 1 : 4, others = hidden[q] == GXSP_NONE ? 1 : 4;
@@ -4743,8 +4834,9 @@ static void gxsp_nested_entries(const uint32_t *hidden, uint32_t p, uint32_t q, 
         }
 }
 
-/* Lists the entries of level 1's matrix to which the elements add. */
-static void gxsp_nested_pattern(const gxsp_system *system, gxsp_pool *scratch, gxsp_list *list) {
+/* Lists the entries of level 1's matrix to which the elements add. dirty: by coarse node; only entries with a dirty
+ * node are listed; NULL: all are */
+static void gxsp_nested_pattern(const gxsp_system *system, gxsp_pool *scratch, const uint8_t *dirty, gxsp_list *list) {
     const gxsp_affine *affine = &system->affine;
     uint64_t *key = (uint64_t *)gxsp_take(scratch, (size_t)affine->block_count * GXSP_LANES * 136, sizeof *key);
     uint32_t bases[16], b, i, j, count;
@@ -4754,9 +4846,11 @@ static void gxsp_nested_pattern(const gxsp_system *system, gxsp_pool *scratch, g
     for (b = 0; b < affine->block_count; b++)
         for (l = 0; l < GXSP_LANES; l++)
             for (count = gxsp_nested_bases(system, &affine->blocks[b], l, bases), i = 0; i < count; i++)
-                for (j = i; j < count; j++)
+                for (j = i; j < count; j++) {
+                    if (dirty && !dirty[bases[i]] && !dirty[bases[j]]) continue;
                     key[keys++] =
                         bases[i] < bases[j] ? (uint64_t)bases[i] << 32 | bases[j] : (uint64_t)bases[j] << 32 | bases[i];
+                }
     qsort(key, keys, sizeof *key, gxsp_compare_keys);
     for (k = 0; k < keys; k++)
         if (k == 0 || key[k] != key[k - 1])
@@ -5014,7 +5108,7 @@ static void gxsp_first_pattern(gxsp_system *system, gxsp_pool *scratch, const gx
     for (c = 0; c < system->mesh.chunk_count; c++)
         if (!before || gxsp_follows_dirty(system, &system->mesh.chunks[c], dirty))
             gxsp_list_pairs(system, &system->mesh.chunks[c], memory, before ? dirty : NULL, &list);
-    if (system->affine.count > 0) gxsp_nested_pattern(system, scratch, &list);
+    if (system->affine.count > 0) gxsp_nested_pattern(system, scratch, before ? dirty : NULL, &list);
     if (!scratch->failed)
         gxsp_rows_make(&system->multigrid.pool, scratch, &system->multigrid.levels[1], list.pair, list.count);
 }
@@ -5196,6 +5290,24 @@ static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch, float (
     gxsp_levels_make(system, scratch, NULL, NULL);
 }
 
+/* What levels have beside their pattern, where copies are affine */
+static void gxsp_nested_end(gxsp_system *system, gxsp_pool *scratch) {
+    gxsp_level *next = &system->multigrid.levels[1];
+    gxsp_count_edges(system);
+    system->multigrid.level_count = 2;
+    next->block = (float *)gxsp_take(&system->multigrid.pool, gxsp_block_numbers(next), sizeof(float));
+    system->affine.block = (double *)gxsp_take(&system->multigrid.pool, gxsp_block_numbers(next), sizeof(double));
+    gxsp_factor_make(system, scratch);
+}
+
+/* Hidden nodes and offsets are to be found: memory for them. count: nodes */
+static void gxsp_nested_begin(gxsp_system *system, uint32_t count) {
+    gxsp_affine *affine = &system->affine;
+    affine->hidden = (uint32_t *)gxsp_take(&system->multigrid.pool, count, sizeof(uint32_t));
+    affine->offset = (float(*)[4][3])gxsp_take(&system->multigrid.pool, affine->group_count, sizeof *affine->offset);
+    if (!system->multigrid.pool.failed) memset(affine->hidden, 0xff, count * sizeof *affine->hidden);
+}
+
 /* The same where copies are affine. Level 1 is factored, so its lattice is widened until that is cheap. */
 static void gxsp_nested_make(gxsp_system *system, gxsp_pool *scratch, float (*place)[3], double spacing) {
     gxsp_level *next = &system->multigrid.levels[1];
@@ -5210,15 +5322,20 @@ static void gxsp_nested_make(gxsp_system *system, gxsp_pool *scratch, float (*pl
     transfer.forest = (uint32_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint32_t));
     mark = scratch->last;
     for (i = 0; i < system->model.n && left_out; i++) left_out[i] = system->model.fixed[i] || gxsp_is_hidden(system, i);
+    memcpy(system->affine.origin, system->model.positions, sizeof system->affine.origin);
+    system->affine.spacing = spacing;
     for (stretch = GXSP_NESTED_FROM;; stretch *= 1.25f) {
         if (scratch->failed) return;
         for (i = 0; i < 3 * system->model.n; i++) own[i / 3][i % 3] = place[i / 3][i % 3] / stretch;
         count = gxsp_first_transfer(system, own, left_out, &transfer);
         if (count == 0) return;
-        count = gxsp_nested_nodes(system, own, &transfer, (double)stretch * spacing, count);
+        gxsp_nested_begin(system, count);
         if (system->multigrid.pool.failed) return;
-        gxsp_level_make(&system->multigrid.pool, next, count);
+        gxsp_level_make(&system->multigrid.pool, next, gxsp_nested_nodes(system, count, count));
         if (system->multigrid.pool.failed) return;
+        gxsp_transfer_places(&system->multigrid.levels[0], &transfer, next);
+        system->affine.stretch = stretch;
+        gxsp_nested_offsets(system);
         gxsp_pairs_make(system, scratch);
         if (!scratch->failed) gxsp_first_pattern(system, scratch, NULL, NULL);
         if (scratch->failed || system->multigrid.pool.failed) return;
@@ -5226,11 +5343,7 @@ static void gxsp_nested_make(gxsp_system *system, gxsp_pool *scratch, float (*pl
         gxsp_release_to(&system->multigrid.pool, NULL);
         gxsp_release_to(scratch, mark);
     }
-    gxsp_count_edges(system);
-    system->multigrid.level_count = 2;
-    next->block = (float *)gxsp_take(&system->multigrid.pool, gxsp_block_numbers(next), sizeof(float));
-    system->affine.block = (double *)gxsp_take(&system->multigrid.pool, gxsp_block_numbers(next), sizeof(double));
-    gxsp_factor_make(system, scratch);
+    gxsp_nested_end(system, scratch);
 }
 
 /* >>lights: copies with next to no mass ---------------------------------------------------------------------------- */
@@ -5487,7 +5600,7 @@ static size_t gxsp_system_build(gxsp_system *system, gxsp_pool *scratch, const g
     system->model.materials = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
     system->state.damped = (gxsp_material *)gxsp_take(&system->pool, model->material_count, sizeof(gxsp_material));
     gxsp_copies_make(system, model->positions);
-    if (model->affine && !system->pool.failed) gxsp_groups_make(system, model);
+    if (model->affine && !system->pool.failed) gxsp_groups_begin(system, model);
     if (scratch->failed || system->pool.failed) return SIZE_MAX;
     for (i = 0; i < system->model.material_count; i++) {
         system->state.damped[i] = system->model.materials[i] = gxsp_material_make(&model->materials[i]);
@@ -5655,46 +5768,58 @@ static void gxsp_affine_inertia(const gxsp_affine_block *block, int point, doubl
     }
 }
 
-/* Energies and forces of a block: see gxsp_task_state */
-static void gxsp_affine_state(const gxsp_pass *pass, gxsp_affine_block *block, double (*slots)[3]) {
-    const int led = pass->inertia || pass->rotated; /* never both */
-    gxsp_lanes x[48], other[48], bend[18], bend_other[18], y[48], forces[18], w[12], w_other[12], ahead[9];
+/* What the points of a block share: x and what is subtracted from it or ahead of it, with their bends, and the sums of
+ * forces on vectors and bends */
+typedef struct gxsp_affine_sums {
+    gxsp_lanes x[48], other[48], bend[18], bend_other[18], y[48], forces[18];
+} gxsp_affine_sums;
+
+/* The share of one point in energies and forces of a block */
+static GXSP_APART void gxsp_affine_point(const gxsp_pass *pass, gxsp_affine_block *block, int p,
+                                         gxsp_affine_sums *sums) {
+    gxsp_lanes w[12], w_other[12], ahead[9], own[12];
     gxsp_state s;
-    int p, k, l;
-    gxsp_affine_gather(block, pass->from, x);
-    gxsp_affine_bend(block, x, bend);
-    if (led) gxsp_affine_gather(block, pass->inertia ? pass->system->vectors.target : pass->rotated, other);
-    for (k = 0; k < 48 && pass->inertia; k++) GXSP_EACH_LANE(l) other[k][l] = x[k][l] - other[k][l];
-    if (led) gxsp_affine_bend(block, other, bend_other);
-    memset(y, 0, sizeof y);
-    memset(forces, 0, sizeof forces);
-    memset(block->energies, 0, sizeof block->energies);
-    for (p = 0; p < 4; p++) {
-        gxsp_lanes own[12];
-        gxsp_affine_corners(block, p, x, bend, w);
-        if (led) gxsp_affine_corners(block, p, other, bend_other, w_other);
-        gxsp_block_parameters(pass->materials, &block->rest, &s);
-        gxsp_block_gradient(block->gradient, w, s.g);
-        if (pass->rotated) gxsp_block_gradient(block->gradient, w_other, ahead);
-        if (pass->nudge && block->kind != GXS_LINEAR && block->kind != GXS_CUSTOM) gxsp_nudge(s.g);
-        gxsp_material_state(block->kind, &s);
-        if (pass->rotated && block->kind != GXS_LINEAR) gxsp_rotate_stress(s.g, ahead, s.p);
-        memset(own, 0, sizeof own);
-        gxsp_block_force(block->rest.weight, block->gradient, s.p, own);
-        gxsp_affine_collect(block, p, own, y, forces);
-        for (l = 0; l < GXSP_LANES; l++) {
-            block->energies[0][l] += block->rest.weight[l] * s.energy[l];
-            block->energies[2][l] += block->rest.weight[l] * s.size[l];
-        }
-        if (pass->inertia) gxsp_affine_inertia(block, p, pass->rate, other, w_other, y, forces, block->energies[1]);
+    int l;
+    gxsp_affine_corners(block, p, sums->x, sums->bend, w);
+    if (pass->inertia || pass->rotated) gxsp_affine_corners(block, p, sums->other, sums->bend_other, w_other);
+    gxsp_block_parameters(pass->materials, &block->rest, &s);
+    gxsp_block_gradient(block->gradient, w, s.g);
+    if (pass->rotated) gxsp_block_gradient(block->gradient, w_other, ahead);
+    if (pass->nudge && block->kind != GXS_LINEAR && block->kind != GXS_CUSTOM) gxsp_nudge(s.g);
+    gxsp_material_state(block->kind, &s);
+    if (pass->rotated && block->kind != GXS_LINEAR) gxsp_rotate_stress(s.g, ahead, s.p);
+    memset(own, 0, sizeof own);
+    gxsp_block_force(block->rest.weight, block->gradient, s.p, own);
+    gxsp_affine_collect(block, p, own, sums->y, sums->forces);
+    for (l = 0; l < GXSP_LANES; l++) {
+        block->energies[0][l] += block->rest.weight[l] * s.energy[l];
+        block->energies[2][l] += block->rest.weight[l] * s.size[l];
     }
+    if (pass->inertia)
+        gxsp_affine_inertia(block, p, pass->rate, sums->other, w_other, sums->y, sums->forces, block->energies[1]);
+}
+
+/* Energies and forces of a block: see gxsp_task_state */
+static GXSP_APART void gxsp_affine_state(const gxsp_pass *pass, gxsp_affine_block *block, double (*slots)[3]) {
+    const int led = pass->inertia || pass->rotated; /* never both */
+    gxsp_affine_sums sums;
+    int p, k, l;
+    gxsp_affine_gather(block, pass->from, sums.x);
+    gxsp_affine_bend(block, sums.x, sums.bend);
+    if (led) gxsp_affine_gather(block, pass->inertia ? pass->system->vectors.target : pass->rotated, sums.other);
+    for (k = 0; k < 48 && pass->inertia; k++) GXSP_EACH_LANE(l) sums.other[k][l] = sums.x[k][l] - sums.other[k][l];
+    if (led) gxsp_affine_bend(block, sums.other, sums.bend_other);
+    memset(sums.y, 0, sizeof sums.y);
+    memset(sums.forces, 0, sizeof sums.forces);
+    memset(block->energies, 0, sizeof block->energies);
+    for (p = 0; p < 4; p++) gxsp_affine_point(pass, block, p, &sums);
     for (l = 0; l < GXSP_LANES; l++) block->energies[2][l] += block->energies[1][l];
-    gxsp_affine_return(block, forces, y);
-    gxsp_affine_scatter(y, slots);
+    gxsp_affine_return(block, sums.forces, sums.y);
+    gxsp_affine_scatter(sums.y, slots);
 }
 
 /* Hessian of a block at pass->from, point by point */
-static void gxsp_affine_tangents(const gxsp_pass *pass, gxsp_affine_block *block) {
+static GXSP_APART void gxsp_affine_tangents(const gxsp_pass *pass, gxsp_affine_block *block) {
     gxsp_lanes x[48], bend[18], w[12];
     gxsp_state s;
     gxsp_svd svd;
@@ -5713,8 +5838,8 @@ static void gxsp_affine_tangents(const gxsp_pass *pass, gxsp_affine_block *block
 }
 
 /* The product of a block with x, into its slots. pass->rate: times scale */
-static void gxsp_affine_product(const gxsp_pass *pass, const gxsp_affine_block *block, gxsp_lanes *x,
-                                double (*slots)[3]) {
+static GXSP_APART void gxsp_affine_product(const gxsp_pass *pass, const gxsp_affine_block *block, gxsp_lanes *x,
+                                           double (*slots)[3]) {
     gxsp_lanes y[48], bend[18], forces[18], w[12], energy;
     int p, k, l;
     gxsp_affine_bend(block, x, bend);
@@ -5806,8 +5931,8 @@ static void gxsp_affine_evaluate(gxsp_system *system, gxsp_pass *pass) {
     int k, l;
     gxsp_over_affine(system, gxsp_task_affine_state, pass, pass->sum);
     for (b = 0; b < affine->block_count; b++)
-        for (l = 0; l < GXSP_LANES && affine->blocks[b].vector[0][l] != GXSP_NONE; l++)
-            for (k = 0; k < 3; k++)
+        for (l = 0; l < GXSP_LANES; l++)
+            for (k = 0; k < 3 && affine->blocks[b].vector[0][l] != GXSP_NONE; k++)
                 gxsp_lead_of(system, affine->blocks[b].vector[0][l])->energies[k] += affine->blocks[b].energies[k][l];
 }
 
@@ -5912,6 +6037,25 @@ static void gxsp_affine_corner_blocks(gxsp_system *system, const gxsp_affine_blo
     }
 }
 
+/* A term's share in the diagonal block of a copy, as a factor of its Hessian. The square of the weight is too little
+ * for the smoother where a term joins many copies, as those of a pair. Its sum over a row is a bound of the whole
+ * matrix. */
+static inline float gxsp_diagonal_share(const gxsp_term *term, float weight) {
+    return term->spread > 0 ? term->spread * fabsf(weight) : weight * weight;
+}
+
+/* The same for the block of a group: the sum of its weights' sizes stands for the weight of a copy. */
+static float gxsp_group_factor(const gxsp_affine *affine, const gxsp_term *term, const gxsp_share *share,
+                               uint32_t place) {
+    float sum = 0;
+    uint32_t j;
+    for (j = 0; j < term->count && term->spread > 0 && place != GXSP_NONE; j++) {
+        const uint32_t other = affine->place[share[j].copy];
+        if (other != GXSP_NONE && other / 4 == place / 4) sum += fabsf(share[j].weight);
+    }
+    return sum > 0 ? term->spread / sum : 1;
+}
+
 /* Springs and contact in the diagonal blocks of groups, and of copies that have no slot in a chunk */
 static void gxsp_affine_terms(gxsp_system *system) {
     static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
@@ -5924,15 +6068,16 @@ static void gxsp_affine_terms(gxsp_system *system) {
         const gxsp_share *share = system->lasting->share + term->first;
         for (i = 0; i < term->count; i++) {
             const uint32_t p = share[i].copy, place = affine->place[p];
+            const float factor = gxsp_group_factor(affine, term, share, place);
             for (k = 0; k < 6 && place == GXSP_NONE && system->mesh.copy_start[p] == system->mesh.copy_start[p + 1];
                  k++)
-                affine->own[p][k] += (double)(share[i].weight * share[i].weight * term->hessian[k]);
+                affine->own[p][k] += (double)(gxsp_diagonal_share(term, share[i].weight) * term->hessian[k]);
             for (j = 0; j < term->count && place != GXSP_NONE; j++) {
                 const uint32_t other = affine->place[share[j].copy];
                 if (other == GXSP_NONE || other / 4 != place / 4 || (place & 3) > (other & 3)) continue;
                 for (k = 0; k < 9; k++)
                     affine->full[place / 4][gxsp_packed_mass[place & 3][other & 3]][k] +=
-                        (double)(share[i].weight * share[j].weight * term->hessian[full[k]]);
+                        (double)(factor * share[i].weight * share[j].weight * term->hessian[full[k]]);
             }
         }
     }
@@ -5979,8 +6124,8 @@ static void gxsp_affine_diagonal(gxsp_system *system, double rate) {
     memset(affine->own, 0, system->model.n * sizeof *affine->own);
     memset(affine->full, 0, affine->group_count * sizeof *affine->full);
     for (b = 0; b < affine->block_count; b++)
-        for (l = 0; l < GXSP_LANES && affine->blocks[b].vector[0][l] != GXSP_NONE && !affine->blocks[b].still; l++)
-            for (k = 0; k < 4; k++)
+        for (l = 0; l < GXSP_LANES && !affine->blocks[b].still; l++)
+            for (k = 0; k < 4 && affine->blocks[b].vector[0][l] != GXSP_NONE; k++)
                 if (!gxsp_follows(system, affine->blocks[b].vector[k][l]))
                     gxsp_affine_corner_blocks(system, &affine->blocks[b], l, k, rate);
     gxsp_affine_terms(system);
@@ -6027,16 +6172,21 @@ GXSP_INLINE void gxsp_prefetch_block(const gxsp_system *system, size_t index, ui
     if (chunk->moments) gxsp_prefetch(&chunk->moments[b], sizeof *chunk->moments);
 }
 
-/* x of a chunk's nodes: x 3, and one more number, which vectors read */
-static void gxsp_chunk_load(const gxsp_system *system, const gxsp_chunk *chunk, const double *x,
-                            double *GXSP_RESTRICT to) {
+/* Numbers of a chunk's nodes: x 3, and one more, which vectors read */
+typedef double gxsp_near[GXSP_NEAR_NUMBERS];
+
+/* x of a chunk's nodes. Returns to; NULL: there is no room for so many nodes */
+static const double *gxsp_chunk_load(const gxsp_system *system, const gxsp_chunk *chunk, const double *x,
+                                     double *GXSP_RESTRICT to) {
     const uint32_t *copies = system->mesh.nodes + chunk->first_node;
     size_t i, c;
+    if (chunk->node_count > GXSP_NEAR) return NULL;
     for (i = 0; i < chunk->node_count; i++) {
         gxsp_prefetch(x + 3 * (size_t)copies[i + GXSP_AHEAD], 3 * sizeof *x);
         for (c = 0; c < 3; c++) to[3 * i + c] = x[3 * (size_t)copies[i] + c];
     }
     to[3 * i] = 0;
+    return to;
 }
 
 #if defined(GXSP_SHUFFLES) && !defined(GXSP_AVX)
@@ -6073,8 +6223,8 @@ static inline void gxsp_load_four(const uint16_t *node, const double *x, double 
 
 /* x of a block's corners from that of the chunk's nodes. A corner that has not changed since the block before keeps
  * its values. */
-static void gxsp_block_load(const gxsp_chunk *chunk, uint32_t b, const double *GXSP_RESTRICT x,
-                            gxsp_lanes *GXSP_RESTRICT corners) {
+static void gxsp_block_load_near(const gxsp_chunk *chunk, uint32_t b, const double *GXSP_RESTRICT x,
+                                 gxsp_lanes *GXSP_RESTRICT corners) {
     const gxsp_corners *corner = &chunk->corners[b];
     int i, l;
     for (i = 0; i < 4; i++)
@@ -6094,12 +6244,21 @@ static void gxsp_block_load_copies(const gxsp_system *system, const gxsp_chunk *
         }
 }
 
-/* Shape function gradients of a block. rest: positions of the chunk's nodes; corners: of the block's, kept from
- * block to block as in gxsp_block_load */
-static gxsp_lanes *gxsp_block_gradients(const gxsp_chunk *chunk, uint32_t b, const double *rest, gxsp_lanes *corners,
-                                        gxsp_lanes *made) {
+/* The same from what gxsp_chunk_load has returned for x */
+static inline void gxsp_block_load(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t b, const double *near,
+                                   const double *x, gxsp_lanes *corners) {
+    if (near)
+        gxsp_block_load_near(chunk, b, near, corners);
+    else
+        gxsp_block_load_copies(system, chunk, b, x, corners);
+}
+
+/* Shape function gradients of a block. rest: positions of the chunk's nodes (gxsp_chunk_load); corners: of the
+ * block's, kept from block to block as in gxsp_block_load_near */
+static gxsp_lanes *gxsp_block_gradients(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t b,
+                                        const double *rest, gxsp_lanes *corners, gxsp_lanes *made) {
     if (chunk->gradients) return chunk->gradients[b].entry;
-    gxsp_block_load(chunk, b, rest, corners);
+    gxsp_block_load(system, chunk, b, rest, system->model.positions, corners);
     gxsp_gradients_make(chunk->rest[b].weight, corners, made);
     return made;
 }
@@ -6174,32 +6333,25 @@ static void gxsp_add_energies(const gxsp_system *system, const gxsp_chunk *chunk
     }
 }
 
-/* Energies of a chunk at pass->from, component by component, and elastic + inertial forces */
-static void gxsp_task_state(void *context, size_t index) {
-    const gxsp_pass *pass = (const gxsp_pass *)context;
+/* Energies and forces of a chunk's blocks, into its partial sums and slots, which are 0. positions, state: what
+ * gxsp_chunk_load has returned for positions and pass->from */
+static GXSP_APART void gxsp_blocks_state(const gxsp_pass *pass, size_t index, const double *positions,
+                                         const double *state) {
     gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->mesh.chunks[index];
     double *slots = &system->vectors.slots[chunk->first_node][0];
+    const int inertia = pass->inertia && gxsp_accelerates(system, chunk, pass->from);
     uint32_t b;
-    int k, l, inertia;
-    double positions[3 * 4 * GXSP_CHUNK + 1], state[3 * 4 * GXSP_CHUNK + 1];
+    int k, l;
     gxsp_lanes corners[12], x[12], other[12], forces[12], made[9];
-    if (gxsp_chunk_settled(system, chunk)) return;
-    for (b = 0; b < chunk->partial_count; b++)
-        memset(system->mesh.partials[chunk->first_partial + b].energies, 0, sizeof system->mesh.partials->energies);
-    memset(slots, 0, 3 * (size_t)chunk->node_count * sizeof *slots);
-    if (system->state.chunk_still[index]) return;
-    inertia = pass->inertia && gxsp_accelerates(system, chunk, pass->from);
-    gxsp_chunk_load(system, chunk, pass->from, state);
-    if (!chunk->gradients) gxsp_chunk_load(system, chunk, system->model.positions, positions);
     memset(forces, 0, sizeof forces);
     for (b = 0; b < chunk->block_count; b++) {
         const gxsp_rest *rest = &chunk->rest[b];
         gxsp_lanes ahead[9], led[12], energies[3], *gradients;
         gxsp_state s;
         gxsp_prefetch_block(system, index, b, GXSP_RESTS_AHEAD, 0);
-        gxsp_block_load(chunk, b, state, x);
-        gradients = gxsp_block_gradients(chunk, b, positions, corners, made);
+        gxsp_block_load(system, chunk, b, state, pass->from, x);
+        gradients = gxsp_block_gradients(system, chunk, b, positions, corners, made);
         if (inertia || pass->rotated) /* never both: rotated stresses come without inertia */
             gxsp_block_load_copies(system, chunk, b, inertia ? system->vectors.target : pass->rotated, other);
         gxsp_block_parameters(pass->materials, rest, &s);
@@ -6222,6 +6374,23 @@ static void gxsp_task_state(void *context, size_t index) {
         gxsp_add_energies(system, chunk, b, energies);
         gxsp_block_store(chunk, b, forces, slots);
     }
+}
+
+/* Energies of a chunk at pass->from, component by component, and elastic + inertial forces */
+static void gxsp_task_state(void *context, size_t index) {
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    gxsp_system *system = pass->system;
+    const gxsp_chunk *chunk = &system->mesh.chunks[index];
+    const double *rest = NULL;
+    gxsp_near positions, state;
+    uint32_t p;
+    if (gxsp_chunk_settled(system, chunk)) return;
+    for (p = 0; p < chunk->partial_count; p++)
+        memset(system->mesh.partials[chunk->first_partial + p].energies, 0, sizeof system->mesh.partials->energies);
+    memset(system->vectors.slots[chunk->first_node], 0, chunk->node_count * sizeof *system->vectors.slots);
+    if (system->state.chunk_still[index]) return;
+    if (!chunk->gradients) rest = gxsp_chunk_load(system, chunk, system->model.positions, positions);
+    gxsp_blocks_state(pass, index, rest, gxsp_chunk_load(system, chunk, pass->from, state));
 }
 
 /* sum = sum over the slots of each copy, 3 doubles each */
@@ -6491,6 +6660,16 @@ static void gxsp_block_scatter(const gxsp_chunk *chunk, uint32_t b, gxsp_singles
     }
 }
 
+/* As gxsp_block_gather, from x of all copies */
+static GXSP_COLD void gxsp_block_gather_copies(const gxsp_system *system, const gxsp_chunk *chunk, uint32_t b,
+                                               const gxsp_vector4 *x, gxsp_singles *to) {
+    const uint32_t *copies = system->mesh.nodes + chunk->first_node;
+    int i, l, c;
+    for (i = 0; i < 4; i++)
+        for (l = 0; l < GXSP_LANES && chunk->changed[b] >> i & 1; l++)
+            for (c = 0; c < 3; c++) to[3 * i + c][l] = x[copies[chunk->corners[b].node[i][l]]][c];
+}
+
 /* >>strains: forces, Hessians and energies of stable neo-Hookean elements, in single precision --------------------- */
 
 /* In: a displacement. Out: forces in the chunks' slots, the strains that products need, or energies of components.
@@ -6563,19 +6742,47 @@ GXSP_INLINE void gxsp_leap_force(const gxsp_leap_block *GXSP_RESTRICT b, gxsp_si
     }
 }
 
-/* x of a chunk's nodes relative to its first one, before they are rounded: bodies may be far from where they were at
- * rest. */
-static void gxsp_leap_load(const gxsp_system *system, const gxsp_chunk *chunk, const double *from, gxsp_vector4 *to) {
-    const uint32_t *copies = system->mesh.nodes + chunk->first_node;
-    const double *origin = from + 3 * (size_t)copies[0];
+/* x of a copy relative to an origin, in single precision */
+static inline void gxsp_leap_place(const double *x, const double *origin, float *to) {
+    to[0] = (float)(x[0] - origin[0]), to[1] = (float)(x[1] - origin[1]), to[2] = (float)(x[2] - origin[2]);
+}
+
+/* pass->from of a chunk's nodes relative to its first one, before they are rounded: bodies may be far from where they
+ * were at rest. Returns to; NULL: there is no room for so many nodes */
+static const gxsp_vector4 *gxsp_leap_load(const gxsp_pass *pass, const gxsp_chunk *chunk, gxsp_vector4 *to) {
+    const uint32_t *copies = pass->system->mesh.nodes + chunk->first_node;
+    const double *origin = pass->from + 3 * (size_t)copies[0];
     uint32_t i;
+    if (chunk->node_count > GXSP_NEAR) return NULL;
     for (i = 0; i < chunk->node_count; i++) {
-        const double *x = from + 3 * (size_t)copies[i];
-        gxsp_prefetch(from + 3 * (size_t)copies[i + GXSP_AHEAD], 3 * sizeof *x);
-        to[i][0] = (float)(x[0] - origin[0]), to[i][1] = (float)(x[1] - origin[1]),
-        to[i][2] = (float)(x[2] - origin[2]);
+        gxsp_prefetch(pass->from + 3 * (size_t)copies[i + GXSP_AHEAD], 3 * sizeof *pass->from);
+        gxsp_leap_place(pass->from + 3 * (size_t)copies[i], origin, to[i]);
         to[i][3] = 0;
     }
+    return (const gxsp_vector4 *)to;
+}
+
+/* As gxsp_block_gather, from pass->from of all copies relative to that of the chunk's first node */
+static GXSP_COLD void gxsp_leap_gather_copies(const gxsp_pass *pass, const gxsp_chunk *chunk, uint32_t b,
+                                              gxsp_singles *to) {
+    const uint32_t *copies = pass->system->mesh.nodes + chunk->first_node;
+    int i, l, c;
+    for (i = 0; i < 4; i++)
+        for (l = 0; l < GXSP_LANES && chunk->changed[b] >> i & 1; l++) {
+            float place[3];
+            gxsp_leap_place(pass->from + 3 * (size_t)copies[chunk->corners[b].node[i][l]],
+                            pass->from + 3 * (size_t)copies[0], place);
+            for (c = 0; c < 3; c++) to[3 * i + c][l] = place[c];
+        }
+}
+
+/* pass->from at a block's corners. near: what gxsp_leap_load has returned */
+static inline void gxsp_leap_gather(const gxsp_pass *pass, const gxsp_chunk *chunk, uint32_t b,
+                                    const gxsp_vector4 *near, gxsp_singles *to) {
+    if (near)
+        gxsp_block_gather(chunk, b, near, to);
+    else
+        gxsp_leap_gather_copies(pass, chunk, b, to);
 }
 
 /* Forces of a chunk at pass->from into its slots, and its largest modulus */
@@ -6584,24 +6791,24 @@ static void gxsp_task_leap_force(void *context, size_t index) {
     const gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->mesh.chunks[index];
     const gxsp_leap_block *blocks = system->leap.blocks + system->leap.first_block[index];
-    gxsp_vector4 in[4 * GXSP_CHUNK], out[4 * GXSP_CHUNK];
+    const gxsp_vector4 *near;
+    gxsp_vector4 in[GXSP_NEAR], *out = (gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node;
     gxsp_singles from[12], to[12], stiffest;
     uint32_t b;
     int l;
     system->leap.stiffest[index] = 0;
     if (system->state.chunk_still[index]) return;
-    gxsp_leap_load(system, chunk, pass->from, in);
+    near = gxsp_leap_load(pass, chunk, in);
     memset(out, 0, chunk->node_count * sizeof *out);
     memset(to, 0, sizeof to);
     memset(stiffest, 0, sizeof stiffest);
     for (b = 0; b < chunk->block_count; b++) {
         if (b + GXSP_TANGENTS_AHEAD < chunk->block_count)
             gxsp_prefetch(&blocks[b + GXSP_TANGENTS_AHEAD], sizeof *blocks);
-        gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
+        gxsp_leap_gather(pass, chunk, b, near, from);
         gxsp_leap_force(&blocks[b], from, to, stiffest, 0, 0, NULL);
         gxsp_block_scatter(chunk, b, to, out);
     }
-    memcpy((gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node, out, chunk->node_count * sizeof *out);
     for (l = 0; l < GXSP_LANES; l++)
         if (stiffest[l] > system->leap.stiffest[index]) system->leap.stiffest[index] = stiffest[l];
 }
@@ -6613,17 +6820,18 @@ static void gxsp_task_strain_force(void *context, size_t index) {
     const gxsp_chunk *chunk = &system->mesh.chunks[index];
     const size_t first = system->leap.first_block[index];
     const float scale = (float)system->model.scale;
-    gxsp_vector4 in[4 * GXSP_CHUNK], *out = (gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node;
+    const gxsp_vector4 *near;
+    gxsp_vector4 in[GXSP_NEAR], *out = (gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node;
     gxsp_singles from[12], to[12];
     uint32_t b;
     if (system->state.chunk_still[index]) return;
-    gxsp_leap_load(system, chunk, pass->from, in);
+    near = gxsp_leap_load(pass, chunk, in);
     memset(out, 0, chunk->node_count * sizeof *out);
     memset(to, 0, sizeof to);
     for (b = 0; b < chunk->block_count; b++) {
         if (b + GXSP_TANGENTS_AHEAD < chunk->block_count)
             gxsp_prefetch(&system->leap.blocks[first + b + GXSP_TANGENTS_AHEAD], sizeof *system->leap.blocks);
-        gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
+        gxsp_leap_gather(pass, chunk, b, near, from);
         gxsp_leap_force(&system->leap.blocks[first + b], from, to, NULL, 1, scale, &system->leap.strains[first + b]);
         gxsp_block_scatter(chunk, b, to, out);
     }
@@ -6686,11 +6894,12 @@ static void gxsp_task_strain_product(void *context, size_t index) {
     const uint32_t *copies = system->mesh.nodes + chunk->first_node;
     const gxsp_leap_block *blocks = system->leap.blocks + system->leap.first_block[index];
     const gxsp_strain *strains = system->leap.strains + system->leap.first_block[index];
-    gxsp_vector4 in[4 * GXSP_CHUNK], *out = (gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node;
+    const int near = chunk->node_count <= GXSP_NEAR;
+    gxsp_vector4 in[GXSP_NEAR], *out = (gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node;
     gxsp_singles from[12], to[12];
     uint32_t b, i;
     if (system->state.chunk_still[index]) return;
-    for (i = 0; i < chunk->node_count; i++) {
+    for (i = 0; i < chunk->node_count && near; i++) {
         gxsp_prefetch(pass->x[copies[i + GXSP_AHEAD]], sizeof *pass->x);
         memcpy(in[i], pass->x[copies[i]], sizeof *in);
     }
@@ -6701,7 +6910,10 @@ static void gxsp_task_strain_product(void *context, size_t index) {
             gxsp_prefetch(blocks[b + GXSP_TANGENTS_AHEAD].gradient, sizeof blocks->gradient);
             gxsp_prefetch(&strains[b + GXSP_TANGENTS_AHEAD], sizeof *strains);
         }
-        gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
+        if (near)
+            gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
+        else
+            gxsp_block_gather_copies(system, chunk, b, (const gxsp_vector4 *)pass->x, from);
         gxsp_strain_product(&blocks[b], &strains[b], from, to);
         gxsp_block_scatter(chunk, b, to, out);
     }
@@ -6739,7 +6951,8 @@ static void gxsp_task_strain_energy(void *context, size_t index) {
     const gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->mesh.chunks[index];
     const gxsp_leap_block *blocks = system->leap.blocks + system->leap.first_block[index];
-    gxsp_vector4 in[4 * GXSP_CHUNK];
+    const gxsp_vector4 *near;
+    gxsp_vector4 in[GXSP_NEAR];
     gxsp_lanes energies[3];
     gxsp_singles from[12];
     uint32_t b;
@@ -6747,11 +6960,11 @@ static void gxsp_task_strain_energy(void *context, size_t index) {
     for (b = 0; b < chunk->partial_count; b++)
         memset(system->mesh.partials[chunk->first_partial + b].energies, 0, sizeof system->mesh.partials->energies);
     if (system->state.chunk_still[index]) return;
-    gxsp_leap_load(system, chunk, pass->from, in);
+    near = gxsp_leap_load(pass, chunk, in);
     for (b = 0; b < chunk->block_count; b++) {
         if (b + GXSP_TANGENTS_AHEAD < chunk->block_count)
             gxsp_prefetch(&blocks[b + GXSP_TANGENTS_AHEAD], sizeof *blocks);
-        gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
+        gxsp_leap_gather(pass, chunk, b, near, from);
         gxsp_strain_energy(&blocks[b], from, energies[0]);
         gxsp_add_energies(system, chunk, b, energies);
     }
@@ -6947,12 +7160,13 @@ static void gxsp_task_product(void *context, size_t index) {
     const gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->mesh.chunks[index];
     const uint32_t *copies = system->mesh.nodes + chunk->first_node;
-    gxsp_vector4 in[4 * GXSP_CHUNK]; /* not the chunks' own memory: stays in the cache */
+    const int near = chunk->node_count <= GXSP_NEAR;
+    gxsp_vector4 in[GXSP_NEAR]; /* not the chunks' own memory: stays in the cache */
     gxsp_vector4 *out = (gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node;
     gxsp_singles from[12], to[12];
     uint32_t b, i;
     if (system->state.chunk_still[index]) return;
-    for (i = 0; i < chunk->node_count; i++) {
+    for (i = 0; i < chunk->node_count && near; i++) {
         gxsp_prefetch(pass->x[copies[i + GXSP_AHEAD]], sizeof *pass->x);
         memcpy(in[i], pass->x[copies[i]], sizeof *in);
     }
@@ -6960,7 +7174,10 @@ static void gxsp_task_product(void *context, size_t index) {
     memset(to, 0, sizeof to);
     for (b = 0; b < chunk->block_count; b++) {
         gxsp_prefetch_block(system, index, b, GXSP_TANGENTS_AHEAD, 1);
-        gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
+        if (near)
+            gxsp_block_gather(chunk, b, (const gxsp_vector4 *)in, from);
+        else
+            gxsp_block_gather_copies(system, chunk, b, (const gxsp_vector4 *)pass->x, from);
         gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_moments(chunk, b), gxsp_block_general(chunk, b),
                           0, from, to);
         gxsp_block_scatter(chunk, b, to, out);
@@ -7132,23 +7349,43 @@ static void gxsp_block_gather_doubles(const gxsp_chunk *chunk, uint32_t b, const
     }
 }
 
+/* The same, from the direction of all copies: see gxsp_copy_direction */
+static GXSP_COLD void gxsp_block_gather_direction(const gxsp_pass *pass, const gxsp_chunk *chunk, uint32_t b,
+                                                  gxsp_singles *to) {
+    const uint32_t *copies = pass->system->mesh.nodes + chunk->first_node;
+    const gxsp_corners *corner = &chunk->corners[b];
+    int i, l, c;
+    for (l = 0; l < GXSP_LANES; l++) {
+        double origin[3] = {0, 0, 0}, x[3];
+        for (i = 0; i < 4; i++) {
+            gxsp_copy_direction(pass, copies[corner->node[i][l]], x);
+            for (c = 0; c < 3; c++) to[3 * i + c][l] = (float)(x[c] - origin[c]);
+            if (i == 0) memcpy(origin, x, sizeof origin);
+        }
+    }
+}
+
 /* The product of pass->from, times pass->factor, into the chunk's slots, 4 floats each */
 static void gxsp_task_apply(void *context, size_t index) {
     const gxsp_pass *pass = (const gxsp_pass *)context;
     const gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->mesh.chunks[index];
     const uint32_t *copies = system->mesh.nodes + chunk->first_node;
-    double in[3 * 4 * GXSP_CHUNK + 1]; /* one more than is read as numbers */
+    const int near = chunk->node_count <= GXSP_NEAR;
+    gxsp_near in;
     gxsp_vector4 *out = (gxsp_vector4 *)(void *)system->vectors.slots + chunk->first_node;
     gxsp_singles from[12], to[12];
     uint32_t b, i;
-    for (i = 0; i < chunk->node_count; i++) gxsp_copy_direction(pass, copies[i], in + 3 * (size_t)i);
+    for (i = 0; i < chunk->node_count && near; i++) gxsp_copy_direction(pass, copies[i], in + 3 * (size_t)i);
     in[3 * (size_t)i] = 0;
     memset(out, 0, chunk->node_count * sizeof *out);
     memset(to, 0, sizeof to);
     for (b = 0; b < chunk->block_count; b++) {
         gxsp_prefetch_block(system, index, b, GXSP_TANGENTS_AHEAD, 1);
-        gxsp_block_gather_doubles(chunk, b, in, from);
+        if (near)
+            gxsp_block_gather_doubles(chunk, b, in, from);
+        else
+            gxsp_block_gather_direction(pass, chunk, b, from);
         gxsp_kind_product(chunk->kind, &chunk->tangents[b], gxsp_block_moments(chunk, b), gxsp_block_general(chunk, b),
                           1, from, to);
         gxsp_block_scatter(chunk, b, to, out);
@@ -7249,33 +7486,28 @@ static void gxsp_diagonal_scatter(const gxsp_chunk *chunk, uint32_t b, gxsp_sing
     }
 }
 
-/* Hessian of a chunk at pass->from, and its diagonal blocks into the slots */
-static void gxsp_task_linearise(void *context, size_t index) {
-    const gxsp_pass *pass = (const gxsp_pass *)context;
+/* Hessians of a chunk's blocks, and their diagonal blocks into the slots, which are 0. positions, state: as in
+ * gxsp_blocks_state */
+static GXSP_APART void gxsp_blocks_linearise(const gxsp_pass *pass, size_t index, const double *positions,
+                                             const double *state) {
     gxsp_system *system = pass->system;
     const gxsp_chunk *chunk = &system->mesh.chunks[index];
     float *slots = (float *)(void *)system->vectors.slots[chunk->first_node];
-    double positions[3 * 4 * GXSP_CHUNK + 1], state[3 * 4 * GXSP_CHUNK + 1];
     gxsp_lanes corners[12], x[12], made[2][9], *gradients[2];
     gxsp_singles own[24];
     const double rate = system->state.quick ? 0 : pass->rate; /* lumped mass is added to the sums */
     uint32_t b, k, blocks;
     int l;
-    system->state.chunk_collapsed[index] = 0;
-    if (system->state.chunk_still[index]) return;
-    memset(slots, 0, 6 * (size_t)chunk->node_count * sizeof *slots);
     memset(own, 0, sizeof own);
-    gxsp_chunk_load(system, chunk, pass->from, state);
-    if (!chunk->gradients) gxsp_chunk_load(system, chunk, system->model.positions, positions);
     for (b = 0; b < chunk->block_count; b += blocks) { /* two at a time */
         gxsp_state s[2];
         gxsp_svd svd[2];
         blocks = b + 1 < chunk->block_count ? 2 : 1;
         for (k = 0; k < blocks; k++) {
             gxsp_prefetch_block(system, index, b + k, GXSP_RESTS_AHEAD, 0);
-            gxsp_block_load(chunk, b + k, state, x);
+            gxsp_block_load(system, chunk, b + k, state, pass->from, x);
             gxsp_block_parameters(pass->materials, &chunk->rest[b + k], &s[k]);
-            gradients[k] = gxsp_block_gradients(chunk, b + k, positions, corners, made[k]);
+            gradients[k] = gxsp_block_gradients(system, chunk, b + k, positions, corners, made[k]);
             gxsp_block_gradient(gradients[k], x, s[k].g);
         }
         system->state.chunk_collapsed[index] |=
@@ -7290,6 +7522,20 @@ static void gxsp_task_linearise(void *context, size_t index) {
             gxsp_diagonal_scatter(chunk, b + k, own, slots);
         }
     }
+}
+
+/* Hessian of a chunk at pass->from, and its diagonal blocks into the slots */
+static void gxsp_task_linearise(void *context, size_t index) {
+    const gxsp_pass *pass = (const gxsp_pass *)context;
+    gxsp_system *system = pass->system;
+    const gxsp_chunk *chunk = &system->mesh.chunks[index];
+    const double *rest = NULL;
+    gxsp_near positions, state;
+    system->state.chunk_collapsed[index] = 0;
+    if (system->state.chunk_still[index]) return;
+    memset(system->vectors.slots[chunk->first_node], 0, chunk->node_count * sizeof *system->vectors.slots);
+    if (!chunk->gradients) rest = gxsp_chunk_load(system, chunk, system->model.positions, positions);
+    gxsp_blocks_linearise(pass, index, rest, gxsp_chunk_load(system, chunk, pass->from, state));
 }
 
 /* Inverse of a positive semi-definite 3x3, packed, in place, as W^T W with W the inverse Cholesky factor. So it is
@@ -7347,13 +7593,6 @@ static void gxsp_task_diagonal(void *context, size_t index) {
         gxsp_invert3(sum);
         for (k = 0; k < 6; k++) system->vectors.diagonal[6 * i + (size_t)k] = (float)sum[k];
     }
-}
-
-/* A term's share in the diagonal block of a copy, as a factor of its Hessian. The square of the weight is too little
- * for the smoother where a term joins many copies, as those of a pair. Its sum over a row is a bound of the whole
- * matrix. */
-static inline float gxsp_diagonal_share(const gxsp_term *term, float weight) {
-    return term->spread > 0 ? term->spread * fabsf(weight) : weight * weight;
 }
 
 /* Adds springs, contact and followers to the diagonal blocks: to a copy's first slot, from which the blocks are
@@ -7656,39 +7895,73 @@ static void gxsp_coarse_lumped(gxsp_system *system, double rate) {
                                       9 * (size_t)gxsp_find_entry(next, fine->parent[i][p], fine->parent[i][q]));
 }
 
+/* Parents of a copy on level 1 and their weights. Returns how many. */
+static uint32_t gxsp_coarse_parents(const gxsp_system *system, uint32_t copy, uint32_t *parents, float *weights) {
+    const gxsp_level *fine = &system->multigrid.levels[0];
+    uint32_t count = 0;
+    int p;
+    if (system->affine.count > 0) return gxsp_nested_parents(system, copy, parents, weights);
+    for (p = 0; p < 4; p++)
+        if (fine->parent[copy][p] != GXSP_NONE) {
+            parents[count] = fine->parent[copy][p];
+            weights[count++] = fine->weight[copy][p];
+        }
+    return count;
+}
+
+/* The side of a pair that a vector of it is on, by the sign: hidden ones are on that of their copy. */
+static float gxsp_side_of(const gxsp_system *system, const gxsp_share *share, uint32_t count, uint32_t i) {
+    uint32_t j;
+    if (!gxsp_is_hidden(system, share[i].copy)) return share[i].weight;
+    for (j = 0; j < count; j++)
+        if (share[j].copy == system->affine.member[system->affine.place[share[i].copy] / 4][0]) return share[j].weight;
+    return 1;
+}
+
 /* What a pair's copies of one sign, or all of them (sign 0), are between coarse functions: nodes of level 1 with the
  * sums of their weights, in the order in which they are met. Returns how many. */
-static uint32_t gxsp_coarse_shares(const gxsp_level *fine, const gxsp_share *share, uint32_t count, int sign,
+static uint32_t gxsp_coarse_shares(const gxsp_system *system, const gxsp_share *share, uint32_t count, int sign,
                                    uint32_t *node, float *weight) {
-    uint32_t found = 0, i, j;
-    int p;
-    for (i = 0; i < count; i++)
-        for (p = 0; p < 4; p++) {
-            const uint32_t parent = fine->parent[share[i].copy][p];
-            const float w = share[i].weight * fine->weight[share[i].copy][p];
-            if (parent == GXSP_NONE || (sign > 0 && share[i].weight < 0) || (sign < 0 && share[i].weight > 0)) continue;
-            for (j = 0; j < found && node[j] != parent; j++) {}
-            if (j == found) node[found] = parent, weight[found++] = 0;
-            weight[j] += w;
+    uint32_t found = 0, i, j, p, parents[16], parent_count;
+    float weights[16];
+    for (i = 0; i < count; i++) {
+        const float side = sign == 0 ? 0 : gxsp_side_of(system, share, count, i);
+        if ((sign > 0 && side < 0) || (sign < 0 && side > 0)) continue;
+        parent_count = gxsp_coarse_parents(system, share[i].copy, parents, weights);
+        for (p = 0; p < parent_count; p++) {
+            for (j = 0; j < found && node[j] != parents[p]; j++) {}
+            if (j == found) node[found] = parents[p], weight[found++] = 0;
+            weight[j] += share[i].weight * weights[p];
         }
+    }
     return found;
+}
+
+/* Adds factor x a Hessian to an entry of level 1's matrix: where copies are affine, to its part in double precision. */
+static void gxsp_add_coarse(gxsp_system *system, uint32_t entry, float factor, const float *hessian) {
+    static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    int k;
+    for (k = 0; k < 9; k++)
+        if (system->affine.count > 0)
+            system->affine.block[9 * (size_t)entry + (size_t)k] += (double)factor * (double)hessian[full[k]];
+        else
+            system->multigrid.levels[1].block[9 * (size_t)entry + (size_t)k] += factor * hessian[full[k]];
 }
 
 /* Adds factor x the outer product of weights times a Hessian to level 1's matrix, if that has all the entries it
  * needs. Returns whether it has. */
-static int gxsp_add_outer(gxsp_level *level, const uint32_t *node, const float *weight, uint32_t count, float factor,
+static int gxsp_add_outer(gxsp_system *system, const uint32_t *node, const float *weight, uint32_t count, float factor,
                           const float *hessian) {
-    static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    const gxsp_level *level = &system->multigrid.levels[1];
     uint32_t i, j, entry;
-    int k, adds;
+    int adds;
     for (adds = 0; adds < 2; adds++)
         for (i = 0; i < count; i++)
             for (j = 0; j < count; j++) {
                 if (node[i] > node[j]) continue;
                 entry = gxsp_find_entry(level, node[i], node[j]);
                 if (level->column[entry] != node[j]) return 0;
-                for (k = 0; k < 9 && adds; k++)
-                    level->block[9 * (size_t)entry + (size_t)k] += factor * weight[i] * weight[j] * hessian[full[k]];
+                if (adds) gxsp_add_coarse(system, entry, factor * weight[i] * weight[j], hessian);
             }
     return 1;
 }
@@ -7697,24 +7970,20 @@ static int gxsp_add_outer(gxsp_level *level, const uint32_t *node, const float *
  * it has none between the two sides, twice each side's: (a - b)^2 <= 2 a^2 + 2 b^2; or, where it has not even those, a
  * diagonal that bounds them: (sum w_i x_i)^2 <= sum |w_j| sum |w_i| x_i^2. */
 static void gxsp_coarse_pair(gxsp_system *system, const gxsp_term *term) {
-    static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-    const gxsp_level *fine = &system->multigrid.levels[0];
     const gxsp_share *share = system->lasting->share + term->first;
-    gxsp_level *next = &system->multigrid.levels[1];
-    uint32_t node[4 * GXS_POINT_MOST], count, i;
-    float weight[4 * GXS_POINT_MOST];
-    int sign, k;
-    count = gxsp_coarse_shares(fine, share, term->count, 0, node, weight);
-    if (gxsp_add_outer(next, node, weight, count, 1, term->hessian)) return;
+    uint32_t node[16 * GXS_POINT_MOST], count, i;
+    float weight[16 * GXS_POINT_MOST];
+    int sign;
+    count = gxsp_coarse_shares(system, share, term->count, 0, node, weight);
+    if (gxsp_add_outer(system, node, weight, count, 1, term->hessian)) return;
     for (sign = -1; sign <= 1; sign += 2) {
         float spread = 0;
-        count = gxsp_coarse_shares(fine, share, term->count, sign, node, weight);
-        if (gxsp_add_outer(next, node, weight, count, 2, term->hessian)) continue;
+        count = gxsp_coarse_shares(system, share, term->count, sign, node, weight);
+        if (gxsp_add_outer(system, node, weight, count, 2, term->hessian)) continue;
         for (i = 0; i < count; i++) spread += fabsf(weight[i]);
         for (i = 0; i < count; i++)
-            for (k = 0; k < 9; k++)
-                next->block[9 * (size_t)gxsp_find_entry(next, node[i], node[i]) + (size_t)k] +=
-                    2 * spread * fabsf(weight[i]) * term->hessian[full[k]];
+            gxsp_add_coarse(system, gxsp_find_entry(&system->multigrid.levels[1], node[i], node[i]),
+                            2 * spread * fabsf(weight[i]), term->hessian);
     }
 }
 
@@ -7751,11 +8020,12 @@ static void gxsp_coarse_term(gxsp_system *system, const gxsp_term *term) {
 /* In: tangents of elements with affine copies, level 1's matrix from chunks. Out: the factor of their sum, in double
  * precision: bending is softer than the rounding and the shift of single precision. */
 
-/* Adds an element's Hessian between its coarse functions. rate: times scale */
-static void gxsp_nested_element(gxsp_system *system, const gxsp_affine_block *block, int l, double rate) {
+/* Adds an element's Hessian between its coarse functions. rate: times scale; dirty: see gxsp_nested_pattern */
+static void gxsp_nested_element(gxsp_system *system, const gxsp_affine_block *block, int l, double rate,
+                                const uint8_t *dirty) {
     const gxsp_level *level = &system->multigrid.levels[1];
     uint32_t node[64], parents[16], count = 0, c, d, k, n;
-    double share[64][16], gradient[4][64][3], value[4][64], flux[27];
+    double share[64][16], gradient[64][3], value[64], flux[27];
     float weights[16];
     int p, m;
     for (k = 0; k < 16; k++) {
@@ -7769,22 +8039,22 @@ static void gxsp_nested_element(gxsp_system *system, const gxsp_affine_block *bl
             share[c][k] += (double)weights[n];
         }
     }
-    for (p = 0; p < 4; p++)
-        for (c = 0; c < count; c++) gxsp_point_function(block, p, l, share[c], gradient[p][c], &value[p][c]);
-    for (p = 0; p < 4; p++)
+    for (p = 0; p < 4; p++) {
+        for (c = 0; c < count; c++) gxsp_point_function(block, p, l, share[c], gradient[c], &value[c]);
         for (d = 0; d < count; d++) {
-            gxsp_point_flux(block, p, l, gradient[p][d], flux);
+            gxsp_point_flux(block, p, l, gradient[d], flux);
             for (c = 0; c < count; c++) {
                 double to[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0}, *entry;
-                if (node[c] > node[d]) continue;
+                if (node[c] > node[d] || (dirty && !dirty[node[c]] && !dirty[node[d]])) continue;
                 entry = system->affine.block + 9 * (size_t)gxsp_find_entry(level, node[c], node[d]);
-                gxsp_point_couple(gradient[p][c], flux, to);
-                to[0] += rate * block->rest.mass[l] * value[p][c] * value[p][d];
-                to[4] += rate * block->rest.mass[l] * value[p][c] * value[p][d];
-                to[8] += rate * block->rest.mass[l] * value[p][c] * value[p][d];
+                gxsp_point_couple(gradient[c], flux, to);
+                to[0] += rate * block->rest.mass[l] * value[c] * value[d];
+                to[4] += rate * block->rest.mass[l] * value[c] * value[d];
+                to[8] += rate * block->rest.mass[l] * value[c] * value[d];
                 for (m = 0; m < 9; m++) entry[3 * (m % 3) + m / 3] += to[m];
             }
         }
+    }
 }
 
 /* Springs and contact between coarse functions, where level 1's matrix has an entry for them */
@@ -7795,6 +8065,10 @@ static void gxsp_nested_term(gxsp_system *system, const gxsp_term *term) {
     uint32_t i, j, p, q, rows[16], columns[16], row_count, column_count;
     float w[16], v[16];
     int k;
+    if (term->spread > 0) {
+        gxsp_coarse_pair(system, term);
+        return;
+    }
     for (i = 0; i < term->count; i++)
         for (j = 0; j < term->count; j++) {
             row_count = gxsp_nested_parents(system, share[i].copy, rows, w);
@@ -7830,7 +8104,9 @@ static double gxsp_double_dot(const double *a, const double *b, size_t count) {
 }
 
 /* The sum of both matrices in the factor's envelope, then Cholesky; the diagonal is inverted. Functions that others
- * make up have pivots of rounding: they are left out. place: n, scratch. 0: a number overflowed. */
+ * make up have pivots of rounding. 2e-8 of the diagonal is added, which hardly stiffens what bends. With 1e-12 an
+ * answer had multiples of them, and the rounding of their products became a force: sheets that nothing holds took
+ * hundreds of iterations in place of six, under pairs even with 4e-9. place: n, scratch. 0: a number overflowed. */
 static int gxsp_nested_factor(gxsp_system *system, uint32_t *place) {
     const gxsp_factor *factor = &system->multigrid.factor;
     const gxsp_level *level = &system->multigrid.levels[1];
@@ -7854,24 +8130,27 @@ static int gxsp_nested_factor(gxsp_system *system, uint32_t *place) {
             const double *left = gxsp_nested_row(system, j);
             row[j] = (row[j] - gxsp_double_dot(row + from, left + from, j - from)) * left[j];
         }
-        row[i] = own * (1 + 1e-12) - gxsp_double_dot(row + first, row + first, i - first);
+        row[i] = own * (1 + 2e-8) - gxsp_double_dot(row + first, row + first, i - first);
         row[i] = own < GXSP_TINY ? 0 : row[i] > 1e-10 * own ? 1 / sqrt(row[i]) : 0;
         if (!gxsp_finite(row[i])) return 0;
     }
     return 1;
 }
 
-/* All numbers of level 1 beside those of chunks, and its factor. rate: times scale. 0: a number overflowed. */
-static int gxsp_nested_numbers(gxsp_system *system, double rate) {
+/* All numbers of level 1 beside those of chunks, and its factor. dirty: coarse nodes whose numbers are new, without
+ * springs and contact; NULL: all are. rate: times scale. 0: a number overflowed. */
+static int gxsp_nested_numbers(gxsp_system *system, double rate, const uint8_t *dirty) {
     const gxsp_affine *affine = &system->affine;
     uint32_t b;
     size_t t;
     int l;
-    memset(affine->block, 0, gxsp_block_numbers(&system->multigrid.levels[1]) * sizeof(double));
+    if (!dirty) memset(affine->block, 0, gxsp_block_numbers(&system->multigrid.levels[1]) * sizeof(double));
     for (b = 0; b < affine->block_count; b++)
         for (l = 0; l < GXSP_LANES; l++)
-            if (affine->blocks[b].rest.weight[l] > 0) gxsp_nested_element(system, &affine->blocks[b], l, rate);
-    for (t = 0; t < system->lasting->count; t++) gxsp_nested_term(system, &system->lasting->term[t]);
+            if (affine->blocks[b].rest.weight[l] > 0 &&
+                (!dirty || gxsp_nested_dirty(system, &affine->blocks[b], l, dirty)))
+                gxsp_nested_element(system, &affine->blocks[b], l, rate, dirty);
+    for (t = 0; t < system->lasting->count && !dirty; t++) gxsp_nested_term(system, &system->lasting->term[t]);
     return gxsp_nested_factor(system, system->multigrid.pairs.local);
 }
 
@@ -8081,7 +8360,7 @@ static int gxsp_coarse_numbers(gxsp_system *system, double rate) {
         if (!system->lasting->term[t].assembled && system->affine.count == 0)
             gxsp_coarse_term(system, &system->lasting->term[t]);
     if (system->affine.count > 0)
-        finite = gxsp_invert_diagonal(fine + 1, NULL) && gxsp_nested_numbers(system, system->model.scale * rate);
+        finite = gxsp_invert_diagonal(fine + 1, NULL) && gxsp_nested_numbers(system, system->model.scale * rate, NULL);
     else
         finite = gxsp_lower_numbers(system, NULL);
     gxsp_return_memory(system);
@@ -8509,11 +8788,14 @@ typedef struct gxsp_renewal {
     uint32_t *successor; /* before: new number of a copy; GXSP_NONE: it is gone */
     uint8_t *touched;    /* change->copy_count: an element around the copy goes or comes */
     gxsp_edit *edits;    /* edit_count lanes of changed groups; then placed_count lanes of further elements */
-    uint32_t edit_count, placed_count;       /* see edits */
+    uint32_t edit_count, placed_count; /* see edits */
+    gxsp_edit *bent; /* lanes of changed groups among elements with affine copies; chunk: their block */
+    uint32_t bent_count, added_count;        /* added_count: elements of the change with affine copies */
     uint32_t *left, *left_class, left_count; /* left_count elements of the change that take no lane of their group, and
                                                 their classes */
     uint8_t *dirty; /* by node of level 1 before the update: some of its followers are touched */
     uint8_t *alike; /* change->copy_count: the copy follows the same copies as before */
+    int dear;       /* level 1 has become too dear to be factored */
 } gxsp_renewal;
 
 /* Groups that change: a bit for each, indexed by the low bits of their numbers */
@@ -8535,6 +8817,13 @@ static int gxsp_changes(const gxs_change *change, const gxsp_filter *filter, uin
     return change->groups[low] == group;
 }
 
+static void gxsp_filter_make(const gxs_change *change, gxsp_filter *filter) {
+    size_t i;
+    memset(filter, 0, sizeof *filter);
+    for (i = 0; i < change->group_count; i++)
+        filter->bit[change->groups[i] % GXSP_FILTER / 64] |= (uint64_t)1 << change->groups[i] % 64;
+}
+
 /* All lanes of the groups that change, in the order of groups, then of lanes */
 static void gxsp_find_edits(gxsp_renewal *update) {
     const gxsp_system *system = update->system;
@@ -8543,9 +8832,7 @@ static void gxsp_find_edits(gxsp_renewal *update) {
     gxsp_filter filter;
     uint32_t c, lane, pass, count = 0;
     size_t i;
-    memset(&filter, 0, sizeof filter);
-    for (i = 0; i < update->change->group_count; i++)
-        filter.bit[update->change->groups[i] % GXSP_FILTER / 64] |= (uint64_t)1 << update->change->groups[i] % 64;
+    gxsp_filter_make(update->change, &filter);
     for (pass = 0; pass < 2 && update->change->group_count > 0; pass++) { /* count, then list */
         if (pass == 1 && !(found = (gxsp_edit *)gxsp_take(update->scratch, count, sizeof *found))) return;
         for (c = 0, count = 0; c < system->mesh.chunk_count; c++)
@@ -8570,6 +8857,14 @@ static void gxsp_find_edits(gxsp_renewal *update) {
     update->edit_count = count;
 }
 
+/* Will an element of the change have an affine copy? */
+static int gxsp_will_bend(const gxs_change *change, const gxs_element *element) {
+    int k;
+    for (k = 0; k < 4 && change->affine; k++)
+        if (change->affine[element->copy[k]] != GXS_NOT_AFFINE) return 1;
+    return 0;
+}
+
 /* Class of an element of the change. Called before copies are moved */
 static uint32_t gxsp_class_of(const gxsp_renewal *update, const gxs_element *element) {
     const gxsp_system *system = update->system;
@@ -8586,6 +8881,10 @@ static void gxsp_match_edits(gxsp_renewal *update) {
     for (e = 0; e < change->element_count && !update->scratch->failed; e++) {
         const gxs_element *element = &change->elements[e];
         const uint32_t class_index = gxsp_class_of(update, element);
+        if (gxsp_will_bend(change, element)) {
+            update->added_count++;
+            continue;
+        }
         while (first < update->edit_count && update->edits[first].group < element->group) first++;
         for (i = first; i < update->edit_count && update->edits[i].group == element->group; i++)
             if (update->edits[i].element == GXSP_NONE &&
@@ -8600,22 +8899,29 @@ static void gxsp_match_edits(gxsp_renewal *update) {
     }
 }
 
-/* Touches the copies around elements that go, and marks the coarse nodes that these follow as dirty. */
+/* Touches a copy as of before the update, and marks the coarse nodes that it follows as dirty. */
+static void gxsp_touch_copy(const gxsp_renewal *update, uint32_t copy) {
+    const gxsp_multigrid *multigrid = &update->system->multigrid;
+    int q;
+    if (update->successor[copy] != GXSP_NONE) update->touched[update->successor[copy]] = 1;
+    for (q = 0; q < 4 && multigrid->level_count > 0; q++)
+        if (multigrid->levels[0].parent[copy][q] != GXSP_NONE) update->dirty[multigrid->levels[0].parent[copy][q]] = 1;
+}
+
+/* Touches the copies around elements that go. */
 static void gxsp_touch_removed(gxsp_renewal *update) {
     const gxsp_system *system = update->system;
     uint32_t i, copies[4];
-    int k, q;
+    int k;
     for (i = 0; i < update->edit_count; i++) {
         const gxsp_edit *edit = &update->edits[i];
         gxsp_lane_copies(system, &system->mesh.chunks[edit->chunk], edit->lane / GXSP_LANES,
                          (int)(edit->lane % GXSP_LANES), copies);
-        for (k = 0; k < 4; k++) {
-            if (update->successor[copies[k]] != GXSP_NONE) update->touched[update->successor[copies[k]]] = 1;
-            for (q = 0; q < 4 && system->multigrid.level_count > 0; q++)
-                if (system->multigrid.levels[0].parent[copies[k]][q] != GXSP_NONE)
-                    update->dirty[system->multigrid.levels[0].parent[copies[k]][q]] = 1;
-        }
+        for (k = 0; k < 4; k++) gxsp_touch_copy(update, copies[k]);
     }
+    for (i = 0; i < update->bent_count; i++)
+        for (k = 0; k < 4; k++)
+            gxsp_touch_copy(update, system->affine.blocks[update->bent[i].chunk].vector[k][update->bent[i].lane]);
 }
 
 static void gxsp_touch_added(const gxsp_renewal *update) {
@@ -8803,6 +9109,179 @@ static int gxsp_renew_nodes(gxsp_renewal *update) {
     return 1;
 }
 
+/* >>affine-edits: elements with affine copies in an update --------------------------------------------------------- */
+
+/* In: a gxs_change, copies in their new numbering. Out: groups, and the blocks of elements with affine copies. An
+ * element takes any free lane of its kind: blocks have no nodes of their own, so that its place does not matter. */
+
+/* The lanes that change */
+static void gxsp_find_bent(gxsp_renewal *update) {
+    const gxsp_affine *affine = &update->system->affine;
+    gxsp_filter filter;
+    uint32_t lane, pass, count = 0;
+    gxsp_filter_make(update->change, &filter);
+    for (pass = 0; pass < 2 && affine->count > 0 && update->change->group_count > 0; pass++) { /* count, then list */
+        if (pass == 1 && !(update->bent = (gxsp_edit *)gxsp_take(update->scratch, count, sizeof *update->bent))) return;
+        for (lane = count = 0; lane < affine->block_count * GXSP_LANES; lane++) {
+            if (affine->groups[lane] == GXSP_NONE || !gxsp_changes(update->change, &filter, affine->groups[lane]))
+                continue;
+            if (pass == 1) {
+                update->bent[count].chunk = lane / GXSP_LANES, update->bent[count].lane = lane % GXSP_LANES;
+                update->bent[count].group = affine->groups[lane], update->bent[count].element = GXSP_NONE;
+            }
+            count++;
+        }
+    }
+    update->bent_count = count;
+}
+
+/* A lane without element: no weight, no mass, no vectors; F = 1 */
+static void gxsp_affine_empty(gxsp_affine_block *block, uint32_t l) {
+    int k;
+    for (k = 0; k < 16; k++) block->vector[k][l] = GXSP_NONE, block->shape[k / 4][k % 4][l] = 0;
+    for (k = 0; k < 9; k++) block->gradient[k][l] = block->edge[k][l] = 0;
+    block->rest.weight[l] = block->rest.mass[l] = 0;
+}
+
+/* Empties the lanes that change, and gives the others the new numbers of their vectors. 0: an element that stays has
+ * lost one of them. */
+static int gxsp_renew_blocks(const gxsp_renewal *update) {
+    gxsp_affine *affine = &update->system->affine;
+    uint32_t i, b, k;
+    for (i = 0; i < update->bent_count; i++) {
+        gxsp_affine_empty(&affine->blocks[update->bent[i].chunk], update->bent[i].lane);
+        affine->groups[update->bent[i].chunk * GXSP_LANES + update->bent[i].lane] = GXSP_NONE;
+    }
+    for (b = 0; b < affine->block_count; b++)
+        for (k = 0; k < 16 * GXSP_LANES; k++) {
+            uint32_t *vector = &affine->blocks[b].vector[k / GXSP_LANES][k % GXSP_LANES];
+            if (*vector == GXSP_NONE) continue;
+            *vector = update->successor[*vector];
+            if (*vector == GXSP_NONE) return 0;
+        }
+    return 1;
+}
+
+/* The vectors of a group are touched if one of them is. */
+static void gxsp_touch_groups(const gxsp_renewal *update) {
+    const gxsp_affine *affine = &update->system->affine;
+    uint32_t group;
+    for (group = 0; group < affine->group_count; group++) {
+        const uint32_t *member = affine->member[group];
+        if (update->touched[member[0]] | update->touched[member[1]] | update->touched[member[2]] |
+            update->touched[member[3]])
+            update->touched[member[0]] = update->touched[member[1]] = update->touched[member[2]] =
+                update->touched[member[3]] = 1;
+    }
+}
+
+/* Groups of the new copies. Those of copies that become affine begin with zeros. before: old numbering, see
+ * gxsp_affine.place */
+static void gxsp_renew_groups(const gxsp_renewal *update, const uint32_t *before) {
+    gxsp_system *system = update->system;
+    uint32_t group, k;
+    gxsp_groups_room(system, gxsp_count_groups(update->change->affine, system->model.n));
+    if (system->pool.failed) return;
+    gxsp_groups_make(system, update->change->affine);
+    for (group = 0; group < system->affine.group_count; group++)
+        for (k = 1; k < 4; k++) {
+            const uint32_t vector = system->affine.member[group][k],
+                           from = before[update->change->origins[vector] >> 1];
+            if (from != GXSP_NONE && (from & 3) > 0) continue;
+            memset(system->vectors.current + 3 * (size_t)vector, 0, 3 * sizeof(double));
+            memset(system->vectors.guess[0][vector], 0, sizeof(gxsp_vector4));
+            memset(system->vectors.guess[1][vector], 0, sizeof(gxsp_vector4));
+            if (system->multigrid.level_count == 0) continue;
+            memset(system->coarse.displacement + 3 * (size_t)vector, 0, 3 * sizeof(double));
+            memset(system->multigrid.levels[0].parent[vector], 0xff, sizeof system->multigrid.levels[0].parent[vector]);
+            memset(system->multigrid.levels[0].weight[vector], 0, sizeof system->multigrid.levels[0].weight[vector]);
+        }
+    gxsp_touch_groups(update);
+}
+
+/* A free lane of a kind, from one on; behind all others if there is none. There is room. */
+static uint32_t gxsp_affine_lane(gxsp_system *system, gxs_material_kind kind, uint32_t lane) {
+    gxsp_affine *affine = &system->affine;
+    for (; lane < affine->block_count * GXSP_LANES; lane++)
+        if (affine->groups[lane] == GXSP_NONE && affine->blocks[lane / GXSP_LANES].kind == kind) return lane;
+    (void)gxsp_affine_open(system, affine->block_count++, kind);
+    return lane;
+}
+
+/* Puts the elements of the change that have affine copies into lanes. */
+static void gxsp_place_bent(gxsp_renewal *update) {
+    gxsp_system *system = update->system;
+    gxsp_affine *affine = &system->affine;
+    uint32_t e, l, lane[GXS_CUSTOM + 1] = {0, 0, 0, 0, 0};
+    const uint32_t room = affine->block_count + update->added_count / GXSP_LANES + GXS_CUSTOM + 1;
+    if (room > affine->block_room) {
+        affine->block_room = (uint32_t)gxsp_room(room);
+        affine->blocks = (gxsp_affine_block *)gxsp_grow(&system->pool, affine->blocks, affine->block_count,
+                                                        affine->block_room, sizeof *affine->blocks);
+        affine->groups = (uint32_t *)gxsp_grow(&system->pool, affine->groups, (size_t)affine->block_count * GXSP_LANES,
+                                               (size_t)affine->block_room * GXSP_LANES, sizeof(uint32_t));
+    }
+    for (e = 0; e < update->change->element_count && !system->pool.failed; e++) {
+        const gxs_element *element = &update->change->elements[e];
+        const gxs_material_kind kind = system->model.materials[element->material].kind;
+        gxsp_affine_block *block;
+        if (!gxsp_will_bend(update->change, element)) continue;
+        lane[kind] = gxsp_affine_lane(system, kind, lane[kind]);
+        block = &affine->blocks[lane[kind] / GXSP_LANES];
+        affine->groups[lane[kind]] = element->group;
+        for (l = 0; l < GXSP_LANES; l++) /* a valid material of this kind */
+            if (affine->groups[lane[kind] / GXSP_LANES * GXSP_LANES + l] == GXSP_NONE)
+                block->rest.material[l] = element->material;
+        gxsp_affine_fill(system, element, block, (int)(lane[kind] % GXSP_LANES));
+    }
+    affine->count += update->added_count;
+    affine->count -= update->bent_count;
+    gxsp_affine_results(system);
+}
+
+/* Does the element of a lane give corner k stiffness or mass? */
+static int gxsp_affine_supports(const gxsp_affine_block *block, int l, int k) {
+    return block->vector[0][l] != GXSP_NONE && (block->rest.weight[l] > 0 || gxsp_affine_mass(block, l, k) > 0);
+}
+
+/* Adds to masses of touched copies, and whether anything supports them. */
+static void gxsp_recount_bent(const gxsp_renewal *update) {
+    gxsp_system *system = update->system;
+    const uint8_t *touched = update->touched;
+    uint32_t b, group;
+    int k, l;
+    for (b = 0; b < system->affine.block_count; b++)
+        for (l = 0; l < GXSP_LANES; l++) {
+            const gxsp_affine_block *block = &system->affine.blocks[b];
+            int any = 0;
+            for (k = 0; k < 4 && block->vector[0][l] != GXSP_NONE; k++) {
+                const uint32_t copy = block->vector[k][l];
+                if (!touched[copy]) continue;
+                any = 1;
+                system->model.lumped[copy] += gxsp_affine_mass(block, l, k);
+                system->model.fixed[copy] &= !gxsp_affine_supports(block, l, k);
+            }
+            if (any) gxsp_affine_lump(system, block, l, touched);
+        }
+    for (group = 0; group < system->affine.group_count; group++)
+        for (k = 1; k < 4; k++)
+            system->model.fixed[system->affine.member[group][k]] = system->model.fixed[system->affine.member[group][0]];
+}
+
+/* Joins what the elements and groups connect. forest: n */
+static void gxsp_join_bent(const gxsp_system *system, uint32_t *forest) {
+    uint32_t b;
+    int k, l;
+    for (b = 0; b < system->affine.block_count; b++)
+        for (l = 0; l < GXSP_LANES; l++)
+            for (k = 1; k < 4; k++) {
+                const gxsp_affine_block *block = &system->affine.blocks[b];
+                if (gxsp_affine_supports(block, l, 0) || gxsp_affine_supports(block, l, k))
+                    gxsp_join(forest, block->vector[0][l], block->vector[k][l]);
+            }
+    gxsp_join_groups(system, forest);
+}
+
 /* >>renewal: copies and components after an update ----------------------------------------------------------------- */
 
 /* In: new numbers of copies, touched copies. Out: the columns over copies in their new order, masses, followers,
@@ -8914,6 +9393,7 @@ static void gxsp_recount_copies(const gxsp_renewal *update) {
                 }
         }
     }
+    if (system->affine.count > 0) gxsp_recount_bent(update);
     for (i = 0; i < system->model.n; i++) system->model.fixed[i] |= system->model.held[i];
 }
 
@@ -8946,6 +9426,7 @@ static void gxsp_renew_components(gxsp_renewal *update) {
             gxsp_join(forest, system->mesh.nodes[slot],
                       system->mesh.nodes[system->mesh.chunks[c].first_node + system->mesh.slot_root[slot]]);
         }
+    gxsp_join_bent(system, forest);
     gxsp_join_followers(system, forest);
     gxsp_number_components(system, forest);
     system->model.components = (gxsp_component *)gxsp_grow(&system->pool, system->model.components, 0,
@@ -8995,6 +9476,13 @@ static void gxsp_join_dirty(gxsp_renewal *update, uint32_t *forest) {
         if (fabs(system->model.followers[e / 4].weight[e % 4]) > 0)
             gxsp_join_parents(update, system->model.followers[e / 4].copy, system->model.followers[e / 4].master[e % 4],
                               forest);
+    for (c = 0; c < system->affine.block_count; c++)
+        for (e = 0; e < 6 * GXSP_LANES; e++) {
+            const gxsp_affine_block *block = &system->affine.blocks[c];
+            const uint32_t l = e % GXSP_LANES, i = block->vector[gxsp_edge_ends[e / GXSP_LANES][0]][l],
+                           j = block->vector[gxsp_edge_ends[e / GXSP_LANES][1]][l];
+            if (block->rest.weight[l] > 0) gxsp_join_parents(update, i, j, forest);
+        }
 }
 
 /* Splits dirty coarse nodes into clusters: the first one of each node keeps its number, others get new ones. from:
@@ -9032,8 +9520,10 @@ static void gxsp_drop_fixed(const gxsp_renewal *update) {
         }
 }
 
-/* Copies blocks of level 1's entries between nodes that are not dirty, from the level before. */
-static void gxsp_keep_blocks(const gxsp_level *before, gxsp_level *level, const uint8_t *dirty) {
+/* Copies blocks of level 1's entries between nodes that are not dirty, from the level before. from, to: what elements
+ * with affine copies add to them; NULL: there are none */
+static void gxsp_keep_blocks(const gxsp_level *before, gxsp_level *level, const uint8_t *dirty, const double *from,
+                             double *to) {
     uint32_t i, k, entry;
     for (i = 0; i < before->n; i++) {
         if (dirty[i]) continue;
@@ -9041,18 +9531,27 @@ static void gxsp_keep_blocks(const gxsp_level *before, gxsp_level *level, const 
             if (dirty[before->column[k]]) continue;
             while (level->column[entry] < before->column[k]) entry++;
             memcpy(level->block + 9 * (size_t)entry, before->block + 9 * (size_t)k, 9 * sizeof(float));
+            if (from) memcpy(to + 9 * (size_t)entry, from + 9 * (size_t)k, 9 * sizeof(double));
         }
     }
 }
 
+static int gxsp_block_dirty(const gxsp_system *system, const gxsp_affine_block *block, const uint8_t *dirty) {
+    int l;
+    for (l = 0; l < GXSP_LANES; l++)
+        if (gxsp_nested_dirty(system, block, l, dirty)) return 1;
+    return 0;
+}
+
 /* Numbers of the coarse levels. Those of entries with dirty nodes come from the Hessian at the state at which the
  * others were made, so that the matrix stays semi-definite. */
-static int gxsp_renew_numbers(gxsp_renewal *update, const gxsp_level *before, const uint8_t *dirty) {
+static int gxsp_renew_numbers(gxsp_renewal *update, const gxsp_level *before, const double *affine,
+                              const uint8_t *dirty) {
     gxsp_system *system = update->system;
     gxsp_pass pass;
     uint32_t c;
     int finite;
-    gxsp_keep_blocks(before, &system->multigrid.levels[1], dirty);
+    gxsp_keep_blocks(before, &system->multigrid.levels[1], dirty, affine, system->affine.block);
     memset(&pass, 0, sizeof pass);
     pass.system = system;
     pass.materials = system->state.damped;
@@ -9063,9 +9562,14 @@ static int gxsp_renew_numbers(gxsp_renewal *update, const gxsp_level *before, co
             system->state.chunk_still[c] = 0;
             gxsp_task_linearise(&pass, c);
         }
+    for (c = 0; c < system->affine.block_count; c++)
+        if (gxsp_block_dirty(system, &system->affine.blocks[c], dirty))
+            gxsp_affine_tangents(&pass, &system->affine.blocks[c]);
     gxsp_lend_memory(system);
     gxsp_coarse_elements(system, dirty);
-    finite = gxsp_lower_numbers(system, dirty);
+    finite = affine ? gxsp_invert_diagonal(&system->multigrid.levels[1], dirty) &&
+                          gxsp_nested_numbers(system, pass.rate, dirty)
+                    : gxsp_lower_numbers(system, dirty);
     gxsp_return_memory(system);
     return finite;
 }
@@ -9076,41 +9580,88 @@ static int gxsp_most_are_dirty(const gxsp_system *system, const uint8_t *dirty) 
     uint32_t c, count = 0;
     for (c = 0; c < system->mesh.chunk_count; c++)
         count += (uint32_t)gxsp_follows_dirty(system, &system->mesh.chunks[c], dirty);
-    return (double)count > GXSP_DIRTY * (double)system->mesh.chunk_count;
+    for (c = 0; c < system->affine.block_count; c++) /* eight of these elements cost about as much as a chunk */
+        count += (uint32_t)gxsp_block_dirty(system, &system->affine.blocks[c], dirty);
+    return (double)count > GXSP_DIRTY * ((double)system->mesh.chunk_count + system->affine.block_count);
 }
 
 /* Have the coarse matrices served their time? */
 static int gxsp_coarse_ends(const gxsp_system *system) { return system->coarse.served >= system->coarse.life; }
 
+/* Hidden nodes, where copies are affine. Coarse nodes that had some keep them, and these are dirty as they are; others
+ * get them behind all nodes. count: coarse nodes without new hidden ones; before: so far. Returns the number of nodes.
+ */
+static uint32_t gxsp_renew_hidden(gxsp_renewal *update, uint32_t before, uint32_t count) {
+    gxsp_system *system = update->system;
+    const uint32_t *hidden = system->affine.hidden, known = system->affine.hidden_count;
+    uint32_t i;
+    if (system->affine.count == 0) return count;
+    gxsp_nested_begin(system, count);
+    if (system->multigrid.pool.failed) return count;
+    memcpy(system->affine.hidden, hidden, (known < before ? known : before) * sizeof *hidden);
+    for (i = 0; i < before; i++)
+        if (system->affine.hidden[i] != GXSP_NONE && update->dirty[i])
+            memset(update->dirty + system->affine.hidden[i], 1, 3);
+    return gxsp_nested_nodes(system, count, count);
+}
+
+/* Nodes of level 1, their places and which of them are dirty. from: see gxsp_number_dirty. */
+static uint8_t *gxsp_renew_coarse_nodes(gxsp_renewal *update, const gxsp_level *before, const uint32_t *from,
+                                        uint32_t count) {
+    gxsp_multigrid *multigrid = &update->system->multigrid;
+    const uint32_t all = gxsp_renew_hidden(update, before->n, count);
+    uint8_t *dirty = (uint8_t *)gxsp_take(update->scratch, all, 1);
+    uint32_t i;
+    memset(&multigrid->levels[1], 0, (GXSP_LEVELS - 1) * sizeof multigrid->levels[1]);
+    gxsp_level_make(&multigrid->pool, &multigrid->levels[1], all);
+    if (update->scratch->failed || multigrid->pool.failed) return dirty;
+    memset(dirty, 1, all);
+    memcpy(dirty, update->dirty, before->n);
+    memcpy(multigrid->levels[1].place, before->place, before->n * sizeof *before->place);
+    for (i = before->n; i < count; i++)
+        memcpy(multigrid->levels[1].place[i], before->place[from[i - before->n]], sizeof *before->place);
+    if (update->system->affine.count > 0) gxsp_nested_offsets(update->system);
+    return dirty;
+}
+
+/* Level 1 where copies are affine: its pattern, and whether its factor is still cheap */
+static void gxsp_renew_nested(gxsp_renewal *update, const gxsp_level *before, const uint8_t *dirty) {
+    gxsp_system *system = update->system;
+    gxsp_pairs_make(system, update->scratch);
+    if (update->scratch->failed) return;
+    gxsp_first_pattern(system, update->scratch, before, dirty);
+    if (update->scratch->failed || system->multigrid.pool.failed) return;
+    update->dear =
+        system->affine.stretch <= GXSP_WIDEST && !gxsp_factors(update->scratch, &system->multigrid.levels[1],
+                                                               GXSP_NESTED_SLACK * GXSP_NESTED_COST * system->model.n);
+    gxsp_nested_end(system, update->scratch);
+}
+
 static void gxsp_renew_levels(gxsp_renewal *update) {
     gxsp_system *system = update->system;
     gxsp_pool *scratch = update->scratch, old = system->multigrid.pool;
     gxsp_level before = system->multigrid.levels[1];
+    const double *affine = system->affine.count > 0 ? system->affine.block : NULL;
     uint32_t *forest = (uint32_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint32_t));
-    uint32_t *from = (uint32_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint32_t)), count = 0, i;
+    uint32_t *from = (uint32_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint32_t));
     uint8_t *dirty = NULL;
     system->multigrid.pool = gxsp_pool_make(&old.allocator);
     gxsp_edges_make(system, scratch);
     if (!scratch->failed && !system->multigrid.pool.failed) {
         gxsp_drop_fixed(update);
         gxsp_join_dirty(update, forest);
-        count = gxsp_number_dirty(update, forest, from);
-        memset(&system->multigrid.levels[1], 0, (GXSP_LEVELS - 1) * sizeof system->multigrid.levels[1]);
-        gxsp_level_make(&system->multigrid.pool, &system->multigrid.levels[1], count);
-        dirty = (uint8_t *)gxsp_take(scratch, count, 1);
+        dirty = gxsp_renew_coarse_nodes(update, &before, from, gxsp_number_dirty(update, forest, from));
     }
     if (!scratch->failed && !system->multigrid.pool.failed) {
-        memset(dirty, 1, count);
-        memcpy(dirty, update->dirty, before.n);
-        memcpy(system->multigrid.levels[1].place, before.place, before.n * sizeof *before.place);
-        for (i = before.n; i < count; i++)
-            memcpy(system->multigrid.levels[1].place[i], before.place[from[i - before.n]], sizeof *before.place);
-        gxsp_levels_make(system, scratch, &before, dirty);
+        if (affine)
+            gxsp_renew_nested(update, &before, dirty);
+        else
+            gxsp_levels_make(system, scratch, &before, dirty);
     }
     if (!scratch->failed && !system->multigrid.pool.failed) gxsp_share_memory(system);
     if (!scratch->failed && !system->multigrid.pool.failed && !system->pool.failed && system->coarse.rate >= 0 &&
         (system->coarse.stiffness > 0 || system->coarse.quick || system->coarse.worn || gxsp_coarse_ends(system) ||
-         gxsp_most_are_dirty(system, dirty) || !gxsp_renew_numbers(update, &before, dirty)))
+         gxsp_most_are_dirty(system, dirty) || !gxsp_renew_numbers(update, &before, affine, dirty)))
         /* the next step makes all numbers anew; springs and contact are no longer known */
         system->coarse.rate = -1;
     gxsp_release_to(&old, NULL);
@@ -9131,8 +9682,9 @@ static void gxsp_renew_steps(gxsp_renewal *update) {
 }
 
 /* Can the model's form take changes? */
-static int gxsp_is_flexible(const gxsp_system *system) {
-    return !system->multigrid.fine && !system->model.volume && !system->model.lumped_mass && !system->affine.place;
+static int gxsp_is_flexible(const gxsp_system *system, const gxs_change *change) {
+    return !system->multigrid.fine && !system->model.volume && !system->model.lumped_mass &&
+           (system->affine.place != NULL) == (change->affine != NULL);
 }
 
 /* Are the chunks still worth keeping, and is the choice of preconditioner still right? */
@@ -9142,6 +9694,8 @@ static int gxsp_is_compact(gxsp_renewal *update) {
     size_t lanes = 0;
     for (c = 0; c < system->mesh.chunk_count; c++) lanes += system->mesh.chunks[c].block_count * GXSP_LANES;
     if (lanes > system->model.element_count + system->model.element_count / 4 + 2 * GXSP_CHUNK) return 0;
+    if (system->affine.block_count * GXSP_LANES > system->affine.count + system->affine.count / 4 + 2 * GXSP_CHUNK)
+        return 0;
     return !count || !system->multigrid.chosen ||
            gxsp_large_component(system, count) == (system->multigrid.level_count > 0);
 }
@@ -9150,21 +9704,33 @@ static int gxsp_is_compact(gxsp_renewal *update) {
  * out: see the pools. */
 static int gxsp_update_system(gxsp_renewal *update) {
     gxsp_system *system = update->system;
+    uint32_t *place = NULL; /* of gxsp_affine, before */
     system->leap.made = 0;
     gxsp_find_edits(update);
+    gxsp_find_bent(update);
     gxsp_match_edits(update);
+    if (system->affine.place) place = (uint32_t *)gxsp_take(update->scratch, update->before, sizeof *place);
     if (update->scratch->failed) return 1;
+    if (place) memcpy(place, system->affine.place, update->before * sizeof *place);
     gxsp_touch_removed(update);
     gxsp_touch_followers(update);
-    system->model.element_count += update->change->element_count;
+    system->model.element_count += update->change->element_count - update->added_count;
     system->model.element_count -= update->edit_count;
     gxsp_replace_elements(update);
     if (system->pool.failed) return 1;
-    if (system->model.element_count == 0 || !gxsp_renew_nodes(update)) return 0;
+    if (place ? system->affine.count + update->added_count == update->bent_count : system->model.element_count == 0)
+        return 0;
+    if (!gxsp_renew_nodes(update) || !gxsp_renew_blocks(update)) return 0;
     gxsp_move_copies(update);
     if (update->scratch->failed || system->pool.failed) return 1;
+    if (place) {
+        gxsp_renew_groups(update, place);
+        if (!system->pool.failed) gxsp_place_bent(update);
+        if (system->pool.failed) return 1;
+    }
     gxsp_renew_steps(update);
     gxsp_touch_added(update);
+    gxsp_touch_groups(update);
     gxsp_recount_copies(update);
     gxsp_renew_lights(update);
     gxsp_set_followers(system, update->change->constraints, update->change->constraint_count);
@@ -9174,7 +9740,7 @@ static int gxsp_update_system(gxsp_renewal *update) {
         gxsp_renew_levels(update);
     else if (!system->pool.failed)
         gxsp_share_memory(system);
-    return gxsp_is_compact(update);
+    return !update->dear && gxsp_is_compact(update);
 }
 
 /* >>components: translations and momentum of loose components ------------------------------------------------------ */
@@ -9518,17 +10084,18 @@ static double gxsp_pair_rounding(const gxs_point *point, const double *displacem
 }
 
 /* Weights of a pair in single precision that are exactly 0 in sum, so that translations meet no stiffness: multiples of
- * a power of two. The largest one takes the rest. */
-static void gxsp_balance_shares(gxsp_share *share, const double *weights, uint32_t count) {
+ * a power of two. The largest one takes the rest. Hidden vectors have no part in that. */
+static void gxsp_balance_shares(const gxsp_system *system, gxsp_share *share, const double *weights, uint32_t count) {
     double largest = 0, unit, sum = 0;
     uint32_t k, at = 0;
     int exponent;
     for (k = 0; k < count; k++)
-        if (fabs(weights[k]) > largest) largest = fabs(weights[k]), at = k;
+        if (!gxsp_is_hidden(system, share[k].copy) && fabs(weights[k]) > largest) largest = fabs(weights[k]), at = k;
     (void)frexp(largest, &exponent);
     unit = ldexp(1, exponent > -100 ? exponent - 23 : -123);
     for (k = 0; k < count; k++) {
         const double rounded = floor(weights[k] / unit + 0.5);
+        if (gxsp_is_hidden(system, share[k].copy)) continue;
         share[k].weight = (float)(rounded * unit);
         sum += rounded;
     }
@@ -9572,6 +10139,7 @@ static void gxsp_balance_islands(const gxsp_problem *problem) {
         double load[3];
         if (!island) continue;
         gxsp_load(problem, i, load);
+        if (gxsp_is_hidden(system, i)) memset(load, 0, sizeof load); /* a translation does no work there */
         for (r = 0; r < 3; r++)
             island->sum[r] += load[r] - problem->rate * system->model.lumped[i] *
                                             (direction[3 * i + r] + system->vectors.current[3 * i + r] -
@@ -9582,7 +10150,7 @@ static void gxsp_balance_islands(const gxsp_problem *problem) {
             system->model.components[p].sum[r] /= problem->rate * system->model.components[p].island;
     for (i = 0; i < system->model.n; i++) {
         const gxsp_component *island = gxsp_island_of(system, i);
-        for (r = 0; r < 3 && island; r++) direction[3 * i + r] += island->sum[r];
+        for (r = 0; r < 3 && island && !gxsp_is_hidden(system, i); r++) direction[3 * i + r] += island->sum[r];
     }
 }
 
@@ -9744,7 +10312,7 @@ static void gxsp_terms_make(const gxsp_problem *problem, const double *displacem
         if (next > problem->step->spring_count + problem->step->point_count &&
             !(problem->step->pairs[next - 1 - problem->step->spring_count - problem->step->point_count].flags &
               GXS_PAIR_OUTSIDE)) {
-            gxsp_balance_shares(lasting->share + term->first, gxsp_weights(point), point->count);
+            gxsp_balance_shares(problem->system, lasting->share + term->first, gxsp_weights(point), point->count);
             for (n = 0; n < point->count; n++) term->spread += fabsf(lasting->share[term->first + n].weight);
         }
         for (k = 0; k < 6; k++) term->hessian[k] = (float)(problem->system->model.scale * pull.hessian[k]);
@@ -10660,6 +11228,38 @@ static size_t gxsp_end_search(gxsp_system *system, size_t *left) {
     return down;
 }
 
+/* Does Newton's method go on until affine copies have settled? */
+static int gxsp_settles(const gxsp_problem *problem) {
+    return problem->system->affine.count > 0 && problem->step->newton_iterations == 0 &&
+           problem->step->integrator != GXS_STATIC;
+}
+
+/* Motion of affine copies from the memory of `before` to current, as a share of that since the step's start: root of
+ * the mean square by mass; the largest of all components. 0: none of them has moved. */
+static double gxsp_share_moved(const gxsp_problem *problem, const double *before) {
+    const gxsp_system *system = problem->system;
+    double share = 0;
+    uint32_t g, p;
+    int k;
+    for (p = 0; p < system->model.component_count; p++)
+        system->model.components[p].sum[0] = system->model.components[p].sum[1] = 0;
+    for (g = 0; g < system->affine.group_count; g++) {
+        const size_t copy = system->affine.member[g][0];
+        double *sum = gxsp_lead_of(system, copy)->sum;
+        for (k = 0; k < 3; k++) {
+            const double last = system->vectors.current[3 * copy + (size_t)k] - before[3 * copy + (size_t)k],
+                         all = system->vectors.current[3 * copy + (size_t)k] - problem->given[3 * copy + (size_t)k];
+            sum[0] += system->model.lumped[copy] * last * last;
+            sum[1] += system->model.lumped[copy] * all * all;
+        }
+    }
+    for (p = 0; p < system->model.component_count; p++) {
+        const double *sum = system->model.components[p].sum;
+        if (sum[1] > 0) share = fmax(share, sqrt(sum[0] / sum[1]));
+    }
+    return share;
+}
+
 /* A step length for each component along the direction, by backtracking on E. E is a sum over components: it falls
  * in each of them, and none waits for another. current becomes the point found, with its forces and energies. 0: no
  * finite point of lower energy was found. */
@@ -10687,6 +11287,7 @@ static int gxsp_line_search(gxsp_problem *problem) {
     gxsp_keep_energies(problem);
     system->vectors.residual = system->vectors.current;
     system->vectors.current = found;
+    if (gxsp_settles(problem)) problem->moved = gxsp_share_moved(problem, system->vectors.residual);
     return left == 0 || down > 0;
 }
 
@@ -10819,7 +11420,10 @@ static int gxsp_find_direction(gxsp_problem *problem) {
 /* Does Newton's method continue? If not, report.stop says why. before: the residual an iteration ago */
 static int gxsp_continues(gxsp_problem *problem, double before) {
     const gxs_step_desc *step = problem->step;
-    const uint32_t budget = (step->newton_iterations ? step->newton_iterations : 1) + problem->added,
+    const uint32_t budget = (step->newton_iterations ? step->newton_iterations
+                             : gxsp_settles(problem) ? GXSP_SHEETS_MOST
+                                                     : 1) +
+                            problem->added,
                    done = problem->report.newton_iterations;
     const double wanted = step->newton_tolerance > 0 ? step->newton_tolerance : 1e-8,
                  goal = wanted > GXSP_ROUNDING ? wanted : GXSP_ROUNDING;
@@ -10832,6 +11436,7 @@ static int gxsp_continues(gxsp_problem *problem, double before) {
     if (problem->stalls > GXSP_STALLS) return 0;
     problem->report.stop = GXS_STOP_ITERATIONS;
     if (gxsp_out_of_time(problem) || done == budget) return 0;
+    if (done > 0 && gxsp_settles(problem) && problem->moved <= GXSP_SETTLED) return 0;
     problem->exact =
         done > 0 && !problem->projected_only && !problem->shortened && residual < 0.1 && residual > 0.1 * before;
     return 1;
@@ -11245,13 +11850,14 @@ static uint32_t *gxsp_leap_blocks_make(gxsp_system *system, gxsp_pool *scratch) 
     if (leap->pool.failed || scratch->failed) return NULL;
     for (c = 0; c < system->mesh.chunk_count; c++) {
         const gxsp_chunk *chunk = &system->mesh.chunks[c];
-        double positions[3 * 4 * GXSP_CHUNK + 1];
+        const double *positions = NULL;
+        gxsp_near near;
         gxsp_lanes corners[12], made[9];
-        if (!chunk->gradients) gxsp_chunk_load(system, chunk, system->model.positions, positions);
+        if (!chunk->gradients) positions = gxsp_chunk_load(system, chunk, system->model.positions, near);
         for (b = 0; b < chunk->block_count; b++) {
             gxsp_leap_block *to = &leap->blocks[leap->first_block[c] + b];
             const gxsp_rest *rest = &chunk->rest[b];
-            gxsp_lanes *gradients = gxsp_block_gradients(chunk, b, positions, corners, made);
+            gxsp_lanes *gradients = gxsp_block_gradients(system, chunk, b, positions, corners, made);
             for (lane = 0; lane < GXSP_LANES; lane++) {
                 const gxsp_material *material = &system->model.materials[rest->material[lane]];
                 const int used = chunk->groups[b * GXSP_LANES + lane] != GXSP_NONE;
@@ -12185,8 +12791,10 @@ static gx_result gxsp_check_plane(const gxs_plane *plane, size_t index, gx_failu
              : GX_OK;
 }
 
-/* A pair of a step. Weights are 0 in sum, or 1, up to the rounding of those who made them. */
-static gx_result gxsp_check_pair(const gxs_step_desc *step, size_t index, size_t n, gx_failure *failure) {
+/* A pair of a step. Weights are 0 in sum, or 1, up to the rounding of those who made them. affine: of the model whose
+ * vectors it names, or NULL */
+static gx_result gxsp_check_pair(const gxs_step_desc *step, size_t index, size_t n, const gxsp_affine *affine,
+                                 gx_failure *failure) {
     static const char *const names[6] = {"pairs.point.count",  "pairs.point.copy",    "pairs.point.weight",
                                          "pairs.point.copies", "pairs.point.weights", "pairs.point.position"};
     const gxs_pair *pair = &step->pairs[index];
@@ -12204,7 +12812,7 @@ static gx_result gxsp_check_pair(const gxs_step_desc *step, size_t index, size_t
         (result = gxsp_check_size(pair->sticking_speed, "pairs.sticking_speed", index, failure)) != GX_OK)
         return result;
     for (k = 0; k < pair->point.count; k++) {
-        sum += gxsp_weights(&pair->point)[k];
+        sum += gxsp_hides(affine, gxsp_copies(&pair->point)[k]) ? 0 : gxsp_weights(&pair->point)[k];
         size += fabs(gxsp_weights(&pair->point)[k]);
     }
     if (size > 1e30) return gxsp_fail(failure, GX_ERROR_RANGE, names[pair->point.copies ? 4 : 2], index);
@@ -12215,8 +12823,9 @@ static gx_result gxsp_check_pair(const gxs_step_desc *step, size_t index, size_t
     return step->pair_slips ? gxsp_check_finite(step->pair_slips + 3 * index, 3, "pair_slips", index, failure) : GX_OK;
 }
 
-/* Springs, contact points, planes and pairs of a step */
-static gx_result gxsp_check_points(const gxs_step_desc *step, size_t n, gx_failure *failure) {
+/* Springs, contact points, planes and pairs of a step. affine: see gxsp_check_pair */
+static gx_result gxsp_check_points(const gxs_step_desc *step, size_t n, const gxsp_affine *affine,
+                                   gx_failure *failure) {
     static const char *const of_springs[6] = {"springs.point.count",   "springs.point.copy",
                                               "springs.point.weight",  "springs.point.copies",
                                               "springs.point.weights", "springs.point.position"};
@@ -12233,18 +12842,22 @@ static gx_result gxsp_check_points(const gxs_step_desc *step, size_t n, gx_failu
     for (i = 0; i < step->point_count && result == GX_OK; i++)
         result = gxsp_check_point(&step->points[i], n, of_points, i, failure);
     for (i = 0; i < step->plane_count && result == GX_OK; i++) result = gxsp_check_plane(&step->planes[i], i, failure);
-    for (i = 0; i < step->pair_count && result == GX_OK; i++) result = gxsp_check_pair(step, i, n, failure);
+    for (i = 0; i < step->pair_count && result == GX_OK; i++) result = gxsp_check_pair(step, i, n, affine, failure);
     return result;
+}
+
+static gx_result gxsp_check_all(const gxs_step_desc *step, size_t n, uint64_t epoch, const gxsp_affine *affine,
+                                gx_failure *failure) {
+    gx_result result = gxsp_check_step(step, failure);
+    if (result == GX_OK) result = gxsp_check_epochs(step, epoch, failure);
+    return result == GX_OK ? gxsp_check_points(step, n, affine, failure) : result;
 }
 
 GXFEM_API gx_result gxs_step_check(const gxs_step_desc *step, size_t copy_count, uint64_t epoch, gx_failure *failure) {
     gx_failure ignored;
-    gx_result result;
     if (failure == NULL) failure = &ignored;
     gxsp_end(failure, GX_OK);
-    result = gxsp_check_step(step, failure);
-    if (result == GX_OK) result = gxsp_check_epochs(step, epoch, failure);
-    return result == GX_OK ? gxsp_check_points(step, copy_count, failure) : result;
+    return gxsp_check_all(step, copy_count, epoch, NULL, failure);
 }
 
 /* Every array that a step reads */
@@ -12263,6 +12876,24 @@ static gx_result gxsp_check_vectors(const gxs_step_desc *step, size_t n, const d
     for (i = 0; step->targets && result == GX_OK && i < n; i++)
         if (held[i]) result = gxsp_check_finite(step->targets + 3 * i, 3, "targets", i, failure);
     return result;
+}
+
+/* Affine copies of a change. They and their hidden vectors are as in a model. */
+static gx_result gxsp_check_changed_affine(const gxs_solver *solver, const gxs_change *change, gxsp_pool *scratch,
+                                           gx_failure *failure) {
+    uint8_t *owned = change->affine ? (uint8_t *)gxsp_take(scratch, change->copy_count, 1) : NULL;
+    gxs_model model;
+    if (!owned) return GX_OK; /* without memory the caller fails */
+    memset(&model, 0, sizeof model);
+    model.copy_count = change->copy_count;
+    model.held = change->held;
+    model.affine = change->affine;
+    model.affine_length = solver->system->affine.place ? solver->system->affine.length : 1;
+    model.elements = change->elements;
+    model.element_count = change->element_count;
+    model.constraints = change->constraints;
+    model.constraint_count = change->constraint_count;
+    return gxsp_check_affine(&model, solver, owned, failure);
 }
 
 /* Is the change one of this model? */
@@ -12443,7 +13074,7 @@ static void gxsp_parts_copy(const gxsp_parts *parts, const gxs_step_desc *step, 
     own[2] = step->sleep_speed > 0 ? step->rest_times : NULL;
     own[3] = step->pair_slips;
     for (k = 0; k < 4; k++)
-        if (own[k] && count[k] > 0) memcpy(back ? own[k] : kept[k], back ? kept[k] : own[k], count[k] * sizeof(double));
+        if (own[k]) memcpy(back ? own[k] : kept[k], back ? kept[k] : own[k], count[k] * sizeof(double));
 }
 
 /* Frequency of the motion, rad/s; 0: not known, or nothing resists */
@@ -12451,10 +13082,9 @@ static double gxsp_tempo_frequency(const gxsp_tempo *tempo) {
     return tempo->motion > 0 && tempo->work > 0 ? sqrt(tempo->work / tempo->motion) : 0;
 }
 
-/* The share of the motion in what is displaced, 0 ... 1 */
+/* The share of the motion in what is displaced, 0 ... 1. The frequency is known. */
 static double gxsp_tempo_share(const gxsp_tempo *tempo) {
-    const double way = tempo->motion / tempo->weight, rest = 2 * fmax(0, tempo->stored);
-    return way > 0 ? sqrt(way / (way + rest)) : 0;
+    return sqrt(tempo->motion / (tempo->motion + 2 * fmax(0, tempo->stored) * tempo->weight));
 }
 
 /* The work of L on a way, J */
@@ -12496,7 +13126,7 @@ static void gxsp_tempo_measure(gxs_solver *solver, double dt, double seconds, co
         if (!system->state.still[i / 3]) kinetic += system->model.lumped[i / 3] * velocity[i] * velocity[i];
     }
     tempo->steps = 0;
-    if (!gxsp_finite(work) || !gxsp_finite(motion) || !gxsp_finite(stored)) return;
+    if (!gxsp_finite(work + motion + stored)) return;
     if (tempo->leaps && system->leap.suits) {
         tempo->resist[0] = keep * tempo->resist[0] + each * gxsp_leap_resistance(system, from, displacement);
         tempo->resist[1] = keep * tempo->resist[1] + motion;
@@ -12544,8 +13174,9 @@ static gxsp_plan gxsp_plan_implicit(const gxs_solver *solver, const gxs_step_des
     return plan;
 }
 
-/* The explicit step for an error; work 0: it cannot be explicit. The filter adds h^2 L / 12 to the inertia, so that L
- * in place of the body's stiffness gives the error, and its masses have an error of their own. */
+/* The explicit step for an error, without targets and points; work 0: it cannot be explicit. The filter adds h^2 L / 12
+ * to the inertia, so that L in place of the body's stiffness gives the error, and its masses have an error of their
+ * own. */
 static gxsp_plan gxsp_plan_explicit(const gxs_solver *solver, const gxs_step_desc *step, double error) {
     const gxsp_leap *leap = &solver->system->leap;
     const gxsp_tempo *tempo = &solver->lasting.tempo;
@@ -12561,16 +13192,14 @@ static gxsp_plan gxsp_plan_explicit(const gxs_solver *solver, const gxs_step_des
     gxsp_plan plan;
     uint32_t degree;
     memset(&plan, 0, sizeof plan);
-    if (!leap->suits || step->targets || gxsp_point_count(step) > 0 || !(0.5 * step->dt * step->mass_damping < 1) ||
-        !(substeps <= GXSP_QUALITY_SUBSTEPS))
-        return plan;
+    if (!leap->suits || !(0.5 * step->dt * step->mass_damping < 1) || !(substeps <= GXSP_QUALITY_SUBSTEPS)) return plan;
     plan.integrator = GXS_EXPLICIT;
     plan.parts = 1;
-    plan.substeps = substeps < 1 ? 1 : (uint32_t)substeps;
+    plan.substeps = (uint32_t)fmax(1, substeps);
     degree = gxsp_leap_degree(leap, step->dt / plan.substeps, factor);
     plan.error = GXSP_LEAP_MASS * later * share / 6;
     if (degree > 1) plan.error += all / plan.substeps / plan.substeps * (1 - 1.0 / degree / degree);
-    plan.work = degree > 0 ? plan.substeps * (1 + GXSP_WORK_PRODUCT * (degree - 1.0)) + GXSP_WORK_STEP : 0;
+    plan.work = plan.substeps * (1 + GXSP_WORK_PRODUCT * (degree - 1.0)) + GXSP_WORK_STEP;
     return plan;
 }
 
@@ -12657,7 +13286,7 @@ static gx_result gxsp_take_parts(gxs_solver *solver, const gxs_step_desc *step, 
     part.integrator = plan->integrator;
     part.substeps = plan->substeps;
     part.cg_tolerance = plan->cg_tolerance;
-    part.newton_iterations = 1;
+    part.newton_iterations = solver->system->affine.count > 0 ? 0 : 1;
     parts->seconds = way * step->dt / plan->parts;
     part.newton_tolerance = 0;
     if (step->targets) part.targets = parts->target;
@@ -12794,6 +13423,10 @@ GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *chan
         return failure->result;
     }
     scratch = gxsp_pool_make(&solver->allocator);
+    if (gxsp_check_changed_affine(solver, change, &scratch, failure) != GX_OK) {
+        gxsp_release_to(&scratch, NULL);
+        return failure->result;
+    }
     solver->lasting.tempo.age = 0;
     solver->lasting.tempo.before_dt = 0;
     system->state.product_rate = -1;
@@ -12813,7 +13446,8 @@ GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *chan
         gxsp_release_to(&scratch, NULL);
         return gxsp_fail(failure, GX_ERROR_ARGUMENT, "constraints", bad);
     }
-    fits = scratch.failed || (gxsp_is_flexible(system) && gxsp_find_successors(&update) && gxsp_update_system(&update));
+    fits = scratch.failed ||
+           (gxsp_is_flexible(system, change) && gxsp_find_successors(&update) && gxsp_update_system(&update));
     gxsp_release_to(&scratch, NULL);
     if (scratch.failed || system->pool.failed || system->multigrid.pool.failed)
         gxsp_end(failure, GX_ERROR_MEMORY);
@@ -12934,10 +13568,9 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
     if (!solver) return gxsp_refuse(failure, "solver");
     if (!solver->system) return gxsp_fail(failure, GX_ERROR_SEQUENCE, "gxs_solver_set_model", SIZE_MAX);
     n = solver->system->model.n;
-    if ((result = gxs_step_check(step, n, solver->system->model.epoch, failure)) != GX_OK ||
+    if ((result = gxsp_check_all(step, n, solver->system->model.epoch, &solver->system->affine, failure)) != GX_OK ||
         (result = gxsp_check_vectors(step, n, displacement, velocity, solver->system->model.held, failure)) != GX_OK)
         return result;
-    if (step->pair_count > 0 && solver->system->affine.count > 0) return gxsp_refuse(failure, "pairs");
     result = (step->quality > 0 ? gxsp_step_by_quality : gxsp_step_once)(solver, step, displacement, velocity, &own,
                                                                          failure);
     if (result == GX_OK && report) *report = own;
@@ -13058,9 +13691,12 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_LANES
 #undef GXSP_CHUNK_BLOCKS
 #undef GXSP_CHUNK
+#undef GXSP_NEAR
+#undef GXSP_NEAR_NUMBERS
 #undef GXSP_EACH_LANE
 #undef GXSP_RESTRICT
 #undef GXSP_COLD
+#undef GXSP_APART
 #undef GXSP_INLINE
 #undef GXSP_ROUNDING
 #undef GXSP_ABSURD
@@ -13127,6 +13763,8 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_NESTED_COST
 #undef GXSP_NESTED_FROM
 #undef GXSP_GAINS
+#undef GXSP_SETTLED
+#undef GXSP_SHEETS_MOST
 #undef GXSP_WIDEST
 #undef GXSP_SHIFT
 #undef GXSP_STIFFNESS
@@ -13184,6 +13822,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_WIDEN
 #undef GXSP_ADD_PRODUCT
 #undef GXSP_SUM_DOUBLES
+#undef GXSP_NESTED_SLACK
 #undef GXSP_AFFINE_TASK
 #undef GXSP_AFFINE_ROUND
 #ifdef GXFEM_SCALAR

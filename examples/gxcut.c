@@ -33,6 +33,13 @@ enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_MISUSED = 2 };
 
 /* -------------------------------------------------------------------------------------------- >>settings */
 
+/* What lies inside of a surface is of another material. */
+typedef struct inclusion {
+    char *cut; /* as given, without the numbers behind it; owned */
+    gx_material material;
+    gxio_surface surface;
+} inclusion;
+
 typedef struct settings {
     const char *mesh, *shape, *blade, *out, *format, *report;
     const char **cuts; /* cut_count, as given */
@@ -40,6 +47,8 @@ typedef struct settings {
     size_t cut_count;
     gx_region *regions; /* region_count */
     size_t region_count;
+    inclusion *inclusions; /* inclusion_count: material i + 1 */
+    size_t inclusion_count;
     double thickness;   /* m; 0: sheets stay sheets */
     gx_blade_desc edge; /* of the blade */
     double dt, young, poisson, density, affine, gravity[3], stretch[3];
@@ -47,6 +56,7 @@ typedef struct settings {
     gx_collider *colliders;         /* collider_count; room for one more */
     size_t collider_count;
     uint32_t frames, newton, cut_at, cells;
+    int release, rests; /* --release, --static */
     int contact, grounded, quiet, help;
 } settings;
 
@@ -87,7 +97,7 @@ typedef struct run {
     gxio_error error;
 } run;
 
-/* What an option takes. The last five may be given more than once or, the flag, take nothing. */
+/* What an option takes. Those behind the flag, which takes nothing, may be given more than once. */
 enum {
     TAKES_TEXT,
     TAKES_NUMBER,
@@ -97,6 +107,7 @@ enum {
     TAKES_SHEET,
     TAKES_SOLID,
     TAKES_KEEP,
+    TAKES_MATERIAL,
     TAKES_REGION,
     TAKES_COLLIDER
 };
@@ -139,6 +150,10 @@ static const char usage[] =
     "  --sheet CUT         separates what lies on its two sides\n"
     "  --solid CUT         closed: removes what lies inside\n"
     "  --keep CUT          closed: removes what lies outside\n"
+    "  --material CUT,E,NU,RHO\n"
+    "                      closed: what lies inside is another material, with Young's modulus, Poisson's ratio and\n"
+    "                      density; where several lie, the last one\n"
+    "  --release           cuts where materials adjoin\n"
     "  --thickness E       makes each sheet a solid of this thickness, m\n"
     "  --cut-at FRAME      cuts before this frame's step (0)\n"
     "  --blade FILE        a blade that cuts while the body steps, from that frame on. The file has a line for each\n"
@@ -149,8 +164,10 @@ static const char usage[] =
     "  --blade-advance M   how far the edge goes before it cuts, m (0: by the mesh)\n"
     "  --blade-inside      the edge may start in the material: a stab\n"
     "  --frames N          steps and frames (60); 0: cut and report only\n"
+    "  --static            in place of frames: the balance of forces, as one frame\n"
     "  --dt S              time step, s (0.033)\n"
-    "  --newton N          Newton iterations per step (1)\n"
+    "  --newton N          Newton iterations per step (as the library does: 1, more for flung sheets; with\n"
+    "                      --static at most, 1000)\n"
     "  --young P           Young's modulus, Pa (1e6)\n"
     "  --poisson X         Poisson's ratio (0.4)\n"
     "  --density D         kg/m3 (1000)\n"
@@ -263,6 +280,39 @@ static int parse_collider(const char *text, gx_collider *collider) {
     return 1;
 }
 
+static gx_material material_of(double young, double poisson, double density) {
+    gx_material material;
+    memset(&material, 0, sizeof material);
+    material.elastic.kind = GXS_STABLE_NEO_HOOKEAN;
+    material.elastic.young = young;
+    material.elastic.poisson = poisson;
+    material.density = density;
+    return material;
+}
+
+/* CUT,E,NU,RHO. Returns NULL, or what is wrong with it. */
+static const char *add_inclusion(settings *set, const char *text) {
+    inclusion *added = &set->inclusions[set->inclusion_count];
+    const char *end = text + strlen(text);
+    size_t length;
+    double v[3];
+    int commas = 0;
+    while (end > text && commas < 3) commas += *--end == ',';
+    if (commas < 3 || end == text || gxio_argument_list(end + 1, v, 3, 3) != 3)
+        return "is not CUT,E,NU,RHO with three finite numbers behind the surface";
+    if (!(v[0] > 0.0)) return "must have Young's modulus above 0";
+    if (!(v[1] >= 0.0 && v[1] < 0.5)) return "must have Poisson's ratio at least 0 and below 0.5";
+    if (!(v[2] > 0.0)) return "must have a density above 0";
+    length = (size_t)(end - text);
+    added->cut = (char *)gxio_array(length + 1, 1);
+    if (!added->cut) return "finds no memory";
+    memcpy(added->cut, text, length);
+    added->cut[length] = 0;
+    added->material = material_of(v[0], v[1], v[2]);
+    set->inclusion_count++;
+    return NULL;
+}
+
 static void add_cut(settings *set, const char *spec, uint32_t kind) {
     set->kinds[set->cut_count] = kind;
     set->cuts[set->cut_count++] = spec;
@@ -283,6 +333,7 @@ static const char *store(settings *set, const option *o, const char *value) {
         return parse_collider(value, &set->colliders[set->collider_count++])
                  ? NULL
                  : "is not sphere:X,Y,Z,RADIUS, box:X0,Y0,Z0,X1,Y1,Z1 or capsule:X0,Y0,Z0,X1,Y1,Z1,RADIUS";
+    case TAKES_MATERIAL: return add_inclusion(set, value);
     default:
         return parse_region(value, &set->regions[set->region_count++])
                  ? NULL
@@ -319,12 +370,25 @@ static int take_argument(settings *set, option *options, int argc, char **argv, 
     return cause ? gxio_fail(error, name, 0, "'%s' %s", value, cause) : 1;
 }
 
+/* --static: one frame of up to 1000 iterations. What belongs to motion does not go with it. */
+static int settle_options(settings *set, option *options, gxio_error *error) {
+    static const char *const moving[4] = {"--frames", "--dt", "--cut-at", "--blade"};
+    int i;
+    for (i = 0; i < 4; i++)
+        if (find_option(options, moving[i])->seen) return misused(error, moving[i], "does not go with --static");
+    set->frames = 1;
+    if (!find_option(options, "--newton")->seen) set->newton = 1000;
+    return 1;
+}
+
 static int take_arguments(settings *set, int argc, char **argv, gxio_error *error) {
     option options[] = {{"--shape", TAKES_TEXT, &set->shape, 0},
                         {"--cells", TAKES_COUNT, &set->cells, 0},
                         {"--sheet", TAKES_SHEET, NULL, 0},
                         {"--solid", TAKES_SOLID, NULL, 0},
                         {"--keep", TAKES_KEEP, NULL, 0},
+                        {"--material", TAKES_MATERIAL, NULL, 0},
+                        {"--release", TAKES_NOTHING, &set->release, 0},
                         {"--thickness", TAKES_NUMBER, &set->thickness, 0},
                         {"--cut-at", TAKES_COUNT, &set->cut_at, 0},
                         {"--blade", TAKES_TEXT, &set->blade, 0},
@@ -333,6 +397,7 @@ static int take_arguments(settings *set, int argc, char **argv, gxio_error *erro
                         {"--blade-inside", TAKES_NOTHING, &set->edge.starts_inside, 0},
                         {"--frames", TAKES_COUNT, &set->frames, 0},
                         {"--dt", TAKES_NUMBER, &set->dt, 0},
+                        {"--static", TAKES_NOTHING, &set->rests, 0},
                         {"--newton", TAKES_COUNT, &set->newton, 0},
                         {"--young", TAKES_NUMBER, &set->young, 0},
                         {"--poisson", TAKES_NUMBER, &set->poisson, 0},
@@ -356,6 +421,7 @@ static int take_arguments(settings *set, int argc, char **argv, gxio_error *erro
     int i;
     for (i = 1; i < argc; i++)
         if (!take_argument(set, options, argc, argv, &i, error)) return 0;
+    if (find_option(options, "--newton")->seen && !set->newton) return misused(error, "--newton", "must be at least 1");
     if (find_option(options, "--thickness")->seen && !(set->thickness > 0.0))
         return misused(error, "--thickness", "must be above 0");
     for (o = options; o->name && !set->blade; o++)
@@ -365,7 +431,7 @@ static int take_arguments(settings *set, int argc, char **argv, gxio_error *erro
         if (o->seen && (o->target == &set->friction || o->target == &set->ground || o->takes == TAKES_COLLIDER))
             return misused(error, o->name, "needs --contact");
     set->grounded = find_option(options, "--ground")->seen;
-    return 1;
+    return set->rests ? settle_options(set, options, error) : 1;
 }
 
 /* The ground becomes a collider, and all get names and friction. */
@@ -397,7 +463,7 @@ static int check_settings(const settings *set, gxio_error *error) {
     if (!(set->poisson >= 0.0 && set->poisson < 0.5))
         return misused(error, "--poisson", "must be at least 0 and below 0.5");
     if (!(set->density > 0.0)) return misused(error, "--density", "must be above 0");
-    if (!set->newton) return misused(error, "--newton", "must be at least 1");
+    if (set->release && !set->inclusion_count) return misused(error, "--release", "needs a --material");
     if (set->cut_at && set->cut_at >= set->frames)
         return misused(error, "--cut-at", "must be below the number of frames");
     if (set->blade && !set->frames) return misused(error, "--blade", "needs frames, and --frames is 0");
@@ -405,7 +471,6 @@ static int check_settings(const settings *set, gxio_error *error) {
     if (!(set->edge.min_advance >= 0.0)) return misused(error, "--blade-advance", "must be at least 0");
     if (!(set->friction >= 0.0)) return misused(error, "--friction", "must be at least 0");
     if (!(set->sleep >= 0.0)) return misused(error, "--sleep", "must be at least 0");
-    if (set->contact && set->affine > 0.0) return misused(error, "--contact", "does not go with --affine");
     if (!is_format(set, "vtu") && !is_format(set, "obj") && !is_format(set, "html"))
         return misused(error, "--format", "must be vtu, obj or html");
     return 1;
@@ -422,13 +487,13 @@ static int parse_settings(settings *set, int argc, char **argv, gxio_error *erro
     set->gravity[2] = -9.81;
     set->stretch[0] = set->stretch[1] = set->stretch[2] = 1.0;
     set->frames = 60;
-    set->newton = 1;
     set->cells = 16;
     set->cuts = (const char **)gxio_array(room, sizeof *set->cuts);
     set->kinds = (uint32_t *)gxio_array(room, sizeof *set->kinds);
     set->regions = (gx_region *)gxio_array(room, sizeof *set->regions);
+    set->inclusions = (inclusion *)calloc(room, sizeof *set->inclusions);
     set->colliders = (gx_collider *)gxio_array(room, sizeof *set->colliders);
-    if (!set->cuts || !set->kinds || !set->regions || !set->colliders)
+    if (!set->cuts || !set->kinds || !set->regions || !set->inclusions || !set->colliders)
         return misused(error, "arguments", "out of memory");
     if (!take_arguments(set, argc, argv, error)) return 0;
     finish_colliders(set);
@@ -499,16 +564,18 @@ static int refuse_cut(run *r, const gx_failure *failure) {
     return complain(r, EXIT_FAILED);
 }
 
-static gx_surface view_cut(const run *r, size_t i) {
+static gx_surface surface_of(const gxio_surface *from, uint32_t kind) {
     gx_surface surface;
     memset(&surface, 0, sizeof surface);
-    surface.vertices = r->cuts[i].vertices;
-    surface.vertex_count = r->cuts[i].vertex_count;
-    surface.triangles = r->cuts[i].triangles;
-    surface.triangle_count = r->cuts[i].triangle_count;
-    surface.kind = r->set.kinds[i];
+    surface.vertices = from->vertices;
+    surface.vertex_count = from->vertex_count;
+    surface.triangles = from->triangles;
+    surface.triangle_count = from->triangle_count;
+    surface.kind = kind;
     return surface;
 }
+
+static gx_surface view_cut(const run *r, size_t i) { return surface_of(&r->cuts[i], r->set.kinds[i]); }
 
 /* Replaces a sheet by a solid of the given thickness. Its triangles are new: no line of the file is theirs. */
 static int thicken(run *r, size_t i) {
@@ -566,6 +633,9 @@ static int load(run *r) {
     if (!r->cuts) return lack_memory(r, "cuts");
     for (i = 0; i < r->set.cut_count; i++)
         if (!gxio_surface_load(r->set.cuts[i], &body, &r->cuts[i], &r->error)) return complain(r, EXIT_MISUSED);
+    for (i = 0; i < r->set.inclusion_count; i++)
+        if (!gxio_surface_load(r->set.inclusions[i].cut, &body, &r->set.inclusions[i].surface, &r->error))
+            return complain(r, EXIT_MISUSED);
     for (i = 0; i < r->set.cut_count && code == EXIT_DONE && r->set.thickness > 0.0; i++)
         if (r->set.kinds[i] == GX_SURFACE_SHEET) code = thicken(r, i);
     if (code != EXIT_DONE || !r->set.blade) return code;
@@ -598,15 +668,10 @@ static int make_blade(run *r) {
 
 /* The body of the shape, and its grid as the mesh */
 static int build_shape(run *r, gx_body_desc *desc) {
-    gx_surface surface;
+    const gx_surface surface = surface_of(&r->shape, GX_SURFACE_SOLID);
     gx_shape shape;
     gx_failure failure;
-    memset(&surface, 0, sizeof surface);
     memset(&shape, 0, sizeof shape);
-    surface.vertices = r->shape.vertices;
-    surface.vertex_count = r->shape.vertex_count;
-    surface.triangles = r->shape.triangles;
-    surface.triangle_count = r->shape.triangle_count;
     shape.surfaces = &surface;
     shape.surface_count = 1;
     shape.cells = r->set.cells;
@@ -645,19 +710,55 @@ static int let_touch(run *r) {
     return gx_body_contact(r->body, &contact, &failure) == GX_OK ? make_blade(r) : fail(r, "--contact", &failure);
 }
 
+/* Gives what lies inside of surfaces their material. */
+static int include(run *r) {
+    gx_surface *surfaces = (gx_surface *)gxio_array(r->set.inclusion_count, sizeof *surfaces);
+    gx_cut_desc desc;
+    gx_failure failure;
+    gx_result result;
+    size_t i;
+    if (!surfaces) return lack_memory(r, "--material");
+    for (i = 0; i < r->set.inclusion_count; i++) {
+        surfaces[i] = surface_of(&r->set.inclusions[i].surface, GX_SURFACE_MATERIAL);
+        surfaces[i].material = (uint32_t)i + 1;
+    }
+    memset(&desc, 0, sizeof desc);
+    desc.surfaces = surfaces;
+    desc.surface_count = r->set.inclusion_count;
+    result = gx_body_cut(r->body, &desc, NULL, &failure);
+    free(surfaces);
+    if (result == GX_OK) return EXIT_DONE;
+    fail(r, failure.surface < r->set.inclusion_count ? r->set.inclusions[failure.surface].cut : "--material", &failure);
+    return failure.field ? EXIT_MISUSED : EXIT_FAILED;
+}
+
+/* The materials: the body's, then those of --material. */
+static gx_material *list_materials(const run *r) {
+    gx_material *list = (gx_material *)gxio_array(r->set.inclusion_count + 1, sizeof *list);
+    size_t i;
+    if (!list) return NULL;
+    list[0] = material_of(r->set.young, r->set.poisson, r->set.density);
+    for (i = 0; i < r->set.inclusion_count; i++) list[i + 1] = r->set.inclusions[i].material;
+    return list;
+}
+
 /* The body, stretched, then held: what is held stays where the stretch put it. */
 static int build(run *r) {
     gx_body_desc desc;
+    gx_material *materials;
     gx_failure failure;
     gx_result result;
     int code;
     memset(&desc, 0, sizeof desc);
-    desc.young = r->set.young;
-    desc.poisson = r->set.poisson;
-    desc.density = r->set.density;
+    materials = list_materials(r);
+    if (!materials) return lack_memory(r, "--material");
+    desc.materials = materials;
+    desc.material_count = r->set.inclusion_count + 1;
     desc.affine_below = r->set.affine;
     desc.clock = gxio_seconds;
     code = r->set.shape ? build_shape(r, &desc) : build_mesh(r, &desc);
+    free(materials);
+    if (code == EXIT_DONE && r->set.inclusion_count) code = include(r);
     if (code != EXIT_DONE) return code;
     result = stretch(r, &failure);
     if (result != GX_OK) return fail(r, "body", &failure);
@@ -672,6 +773,7 @@ static int build(run *r) {
 
 /* All cuts in one call. */
 static int cut(run *r) {
+    static const uint32_t any[2] = {GX_ANY_MATERIAL, GX_ANY_MATERIAL};
     gx_surface *surfaces = (gx_surface *)gxio_array(r->set.cut_count, sizeof *surfaces);
     gx_cut_desc desc;
     gx_failure failure;
@@ -682,6 +784,8 @@ static int cut(run *r) {
     memset(&desc, 0, sizeof desc);
     desc.surfaces = surfaces;
     desc.surface_count = r->set.cut_count;
+    desc.release = any;
+    desc.release_count = r->set.release ? 1 : 0;
     result = gx_body_cut(r->body, &desc, &r->cut, &failure);
     free(surfaces);
     r->has_cut = result == GX_OK;
@@ -868,6 +972,12 @@ static int refuse_step(run *r, uint32_t frame, const gx_failure *failure) {
     return end_early(r, name, 0, cause.text);
 }
 
+enum { STATIC_CG = 20000 };                  /* iterations in each of Newton's, at most */
+static const double static_tolerance = 1e-8; /* residual of a balance */
+static const double static_accepted = 1e-6;  /* where rounding or --newton ends the search above that */
+static const double static_cg_tolerance = 1e-4;
+
+/* The balance of forces is searched for until the residual is that of rounding; a coarse one is no balance. */
 static int step(run *r, uint32_t frame) {
     gx_step_desc desc;
     gx_failure failure;
@@ -878,16 +988,26 @@ static int step(run *r, uint32_t frame) {
     desc.colliders = r->set.colliders;
     desc.collider_count = r->set.collider_count;
     desc.sleep_speed = r->set.sleep;
+    if (r->set.rests) {
+        desc.integrator = GXS_STATIC;
+        desc.dt = 0.0;
+        desc.newton_tolerance = static_tolerance;
+        desc.cg_iterations = STATIC_CG;
+        desc.cg_tolerance = static_cg_tolerance;
+    }
     if (gx_body_step(r->body, &desc, &r->stepped, &failure) != GX_OK) return refuse_step(r, frame, &failure);
     r->seconds_newton += r->stepped.seconds;
-    return EXIT_DONE;
+    if (!r->set.rests || r->stepped.residual <= static_accepted) return EXIT_DONE;
+    gxio_fail(&r->error, "--static", 0, "no balance after %lu iterations: a residual of %.1e is left",
+              (unsigned long)r->stepped.newton_iterations, r->stepped.residual);
+    return complain(r, EXIT_FAILED);
 }
 
 /* One frame: cut if it is time to, step, move the blade, write. */
 static int advance(run *r, uint32_t frame) {
     int code = EXIT_DONE;
     if (frame == r->set.cut_at) {
-        if (r->set.cut_count) code = cut(r);
+        if (r->set.cut_count || r->set.release) code = cut(r);
         if (code == EXIT_DONE) code = look(r);
     }
     if (code == EXIT_DONE) code = step(r, frame);
@@ -902,7 +1022,7 @@ static int simulate(run *r) {
     uint32_t frame;
     int code = EXIT_DONE;
     if (!r->set.frames) {
-        if (r->set.cut_count) code = cut(r);
+        if (r->set.cut_count || r->set.release) code = cut(r);
         return code == EXIT_DONE ? look(r) : code;
     }
     if (r->set.cut_at) code = look(r);
@@ -1081,7 +1201,50 @@ static void print_cells(FILE *stream, const gx_view *view, double *volumes) {
     fprintf(stream, "\n  },\n");
 }
 
-static void print_report(FILE *stream, run *r, uint64_t hash, double *cell_volumes, double *fragment_volumes) {
+/* Volumes and masses of the materials, in their order */
+static void print_materials(FILE *stream, const run *r) {
+    size_t m, i;
+    fprintf(stream, "  \"materials\": [");
+    for (m = 0; m <= r->set.inclusion_count; m++) {
+        const double density = m ? r->set.inclusions[m - 1].material.density : r->set.density;
+        double volume = 0.0;
+        for (i = 0; i < r->view.cell_count; i++)
+            if ((r->view.cell_material ? r->view.cell_material[i] : 0) == m) volume += r->view.cell_volume[i];
+        fprintf(stream, "%s{\"volume\": %.17g, \"mass\": %.17g}", m ? ", " : "", volume, density * volume);
+    }
+    fprintf(stream, "],\n");
+}
+
+static size_t count_affine(const gx_view *view) {
+    size_t i, count = 0;
+    for (i = 0; view->copy_affine && i < view->copy_count; i++) count += view->copy_affine[i];
+    return count;
+}
+
+/* Displacements and, of affine copies, motions */
+static size_t count_unknowns(const gx_view *view) { return 3 * view->copy_count + 9 * count_affine(view); }
+
+/* The largest displacement of a vertex of the skin, m */
+static gx_result find_tip(run *r, double *tip, gx_failure *failure) {
+    gx_skin skin;
+    gx_result result = gx_body_skin(r->body, NULL, &skin, failure);
+    double *x = NULL;
+    size_t i;
+    *tip = 0.0;
+    if (result == GX_OK) x = (double *)gxio_array(skin.vertex_count, 3 * sizeof(double));
+    if (result == GX_OK && !x) return failure->result = GX_ERROR_MEMORY;
+    if (result == GX_OK) result = gx_body_skin_positions(r->body, x, failure);
+    for (i = 0; result == GX_OK && i < 3 * skin.vertex_count; i += 3) {
+        const double *rest = skin.vertex_rest + i;
+        const double u[3] = {x[i] - rest[0], x[i + 1] - rest[1], x[i + 2] - rest[2]};
+        *tip = fmax(*tip, sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]));
+    }
+    free(x);
+    return result;
+}
+
+static void print_report(FILE *stream, run *r, uint64_t hash, double tip, double *cell_volumes,
+                         double *fragment_volumes) {
     const gx_view *view = &r->view;
     fprintf(stream, "{\n  \"elements\": %lu,\n  \"nodes\": %lu,\n  \"cells\": %lu,\n",
             (unsigned long)view->element_count, (unsigned long)view->node_count, (unsigned long)view->cell_count);
@@ -1090,7 +1253,12 @@ static void print_report(FILE *stream, run *r, uint64_t hash, double *cell_volum
             (unsigned long)view->fragment_count);
     print_volumes(stream, "fragment_volumes", fragment_volumes, view->fragment_count);
     fprintf(stream, ",\n  \"volume\": %.17g,\n  \"dofs\": %lu,\n  \"mass\": %.17g,\n", view->volume,
-            3 * (unsigned long)view->copy_count, view->mass);
+            (unsigned long)count_unknowns(view), view->mass);
+    fprintf(stream, "  \"affine_copies\": %lu,\n  \"tip\": %.17g,\n", (unsigned long)count_affine(view), tip);
+    if (r->set.rests)
+        fprintf(stream, "  \"newton_iterations\": %lu,\n  \"cg_iterations\": %lu,\n  \"residual\": %.17g,\n",
+                (unsigned long)r->stepped.newton_iterations, (unsigned long)r->stepped.cg_iterations,
+                r->stepped.residual);
     fprintf(stream, "  \"topology_hash\": \"%08lx%08lx\",\n  \"min_link_ratio\": %.17g,\n", (unsigned long)(hash >> 32),
             (unsigned long)(hash & 0xffffffffu), smallest_link(r));
     fprintf(stream,
@@ -1100,6 +1268,7 @@ static void print_report(FILE *stream, run *r, uint64_t hash, double *cell_volum
             r->cut.seconds_enrichment + r->strokes.seconds_enrichment,
             r->cut.seconds_integrals + r->strokes.seconds_integrals, r->seconds_newton,
             gxio_seconds(NULL) - r->seconds_start);
+    if (r->set.inclusion_count) print_materials(stream, r);
     if (r->blade) print_blade(stream, &r->strokes);
     if (r->set.contact) print_contact(stream, r);
     fprintf(stream, "  \"frames\": %lu\n}\n", (unsigned long)r->set.frames);
@@ -1117,15 +1286,16 @@ static int report(run *r) {
     double *cells = copy_doubles(r->view.cell_volume, r->view.cell_count);
     double *fragments = copy_doubles(r->view.fragment_volume, r->view.fragment_count);
     gxio_writer writer;
+    double tip = 0.0;
     int code = EXIT_DONE;
-    if (failure.result != GX_OK)
+    if (failure.result != GX_OK || find_tip(r, &tip, &failure) != GX_OK)
         code = fail(r, "report", &failure);
     else if (!cells || !fragments)
         code = lack_memory(r, "report");
     else if (!gxio_writer_open(&writer, r->set.report, &r->error))
         code = complain(r, EXIT_MISUSED);
     else {
-        print_report(writer.stream, r, hash, cells, fragments);
+        print_report(writer.stream, r, hash, tip, cells, fragments);
         if (!gxio_writer_close(&writer, 1, &r->error)) code = complain(r, EXIT_MISUSED);
     }
     free(cells);
@@ -1136,8 +1306,13 @@ static int report(run *r) {
 static void summarise_frames(const run *r) {
     char first[32], last[32];
     if (!r->set.frames) return;
-    printf("steps     %lu of %g s, %.3g ms each\n", (unsigned long)r->set.frames, r->set.dt,
-           1e3 * r->seconds_newton / r->set.frames);
+    if (r->set.rests)
+        printf("balance   %lu iterations, %lu of conjugate gradients, %.3g s; residual %.1e\n",
+               (unsigned long)r->stepped.newton_iterations, (unsigned long)r->stepped.cg_iterations, r->seconds_newton,
+               r->stepped.residual);
+    else
+        printf("steps     %lu of %g s, %.3g ms each\n", (unsigned long)r->set.frames, r->set.dt,
+               1e3 * r->seconds_newton / r->set.frames);
     if (is_format(&r->set, "html")) {
         printf("wrote     %s; open it in a browser\n", r->set.out);
         return;
@@ -1167,7 +1342,12 @@ static void summarise(const run *r) {
     if (r->blade) summarise_blade(&r->strokes);
     printf("body      %lu cells, %lu fragments, volume %.15g m3, mass %.6g kg\n", (unsigned long)view->cell_count,
            (unsigned long)view->fragment_count, view->volume, view->mass);
-    printf("unknowns  %lu copies x 3 = %lu\n", (unsigned long)view->copy_count, 3 * (unsigned long)view->copy_count);
+    if (count_affine(view))
+        printf("unknowns  %lu copies x 3 + %lu affine ones x 9 = %lu\n", (unsigned long)view->copy_count,
+               (unsigned long)count_affine(view), (unsigned long)count_unknowns(view));
+    else
+        printf("unknowns  %lu copies x 3 = %lu\n", (unsigned long)view->copy_count,
+               (unsigned long)count_unknowns(view));
     if (r->has_cut)
         printf("cut time  %.3g ms: arrangement %.3g, enrichment %.3g, integrals %.3g\n",
                1e3 * (r->cut.seconds_arrangement + r->cut.seconds_enrichment + r->cut.seconds_integrals),
@@ -1188,6 +1368,11 @@ static void release(run *r) {
     gx_body_destroy(r->body);
     gxio_mesh_release(&r->mesh);
     gxio_surface_release(&r->shape);
+    for (i = 0; i < r->set.inclusion_count; i++) {
+        free(r->set.inclusions[i].cut);
+        gxio_surface_release(&r->set.inclusions[i].surface);
+    }
+    free(r->set.inclusions);
     free((void *)r->set.cuts);
     free(r->set.kinds);
     free(r->set.regions);

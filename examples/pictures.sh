@@ -14,7 +14,7 @@ failed=0
 # on a display: COMMAND...
 display() { if [ -n "${DISPLAY:-}" ]; then "$@"; else xvfb-run -a "$@"; fi; }
 
-# picture SCENE EVERY FRAME ARRAY AZIMUTH ELEVATION [OPTION]...: the FRAME-th of each EVERY-th frame, coloured by `fragment` or, outer
+# picture SCENE EVERY FRAME ARRAY AZIMUTH ELEVATION [OPTION]...: the FRAME-th of each EVERY-th frame, coloured by `fragment`, by `material` or, outer
 # surface and faces of cuts, by `surface`; OPTIONs of f3d, without any z is up
 picture() {
     echo "$1"
@@ -45,4 +45,5 @@ picture armadillo 25 0006 surface 0 0 --up=+Y --camera-position=1.6,0.9,3.6 --ca
 picture noisy_plate 20 0011 surface 0 0 --up=+Z --camera-position=-2.5,-2.8,3.2 --camera-focal-point=-0.2,0,0 --camera-view-angle=40
 picture overhang 12 0006 fragment 0 0 --up=+Z --camera-position=4.2,-4.6,2.4 --camera-focal-point=1.2,0.4,0.35 --camera-view-angle=21
 picture surgeon 20 0010 surface 0 0 --up=+Z --camera-position=-0.25,-0.62,0.4 --camera-focal-point=0.005,-0.05,-0.035 --camera-view-angle=24
+picture organ 5 0022 material 0 0 --up=+Z --camera-position=-0.25,-0.55,0.3 --camera-focal-point=-0.01,-0.04,0.0 --camera-view-angle=21
 exit $failed

@@ -16,7 +16,7 @@
      >>failure     one line of text, exit code
      >>memory      an allocator that counts
      >>arguments   the command line
-     >>body        mesh, body
+     >>body        mesh, body; closed surfaces, a body of them
      >>sheets      surfaces that advance strip by strip
      >>trace       the run as a file, for other programs to repeat
      >>cuts        a cut, and the record of all
@@ -51,7 +51,7 @@
 
 typedef struct scene_desc {
     const char *name, *about;      /* about: one line */
-    const char *mesh, *small_mesh; /* as gxio_mesh_load takes them; small_mesh NULL: the same */
+    const char *mesh, *small_mesh; /* as gxio_mesh_load takes them; small_mesh NULL: the same; mesh NULL: none */
     int any_mesh;                  /* not 0: --mesh may name another */
     uint32_t frames, small_frames;
     int has_csv;           /* not 0: --csv names a file for figures of the scene's own */
@@ -303,7 +303,7 @@ static inline void scene_open(scene *s, const scene_desc *desc, int argc, char *
         scene_usage(s);
         exit(SCENE_RIGHT);
     }
-    if (!gxio_mesh_load(s->mesh_name, &s->mesh, &s->error)) scene_quit(s, SCENE_MISUSED);
+    if (s->mesh_name && !gxio_mesh_load(s->mesh_name, &s->mesh, &s->error)) scene_quit(s, SCENE_MISUSED);
     if (s->out && !scene_is_format(s, "html") && !gxio_make_directory(s->out, &s->error)) scene_quit(s, SCENE_MISUSED);
     if (!s->quiet) printf("%s: %s\n", s->desc.name, s->desc.about);
 }
@@ -344,6 +344,18 @@ static inline void scene_keep(scene *s, int (*wanted)(const void *user, const do
     scene_drop_nodes(s);
 }
 
+static inline void scene_create(scene *s) {
+    gx_body_desc *desc = &s->body_desc;
+    desc->allocator.allocate = scene_allocate;
+    desc->allocator.release = scene_release;
+    desc->allocator.reallocate = scene_reallocate;
+    desc->allocator.user = &s->memory;
+    desc->clock = gxio_seconds;
+    scene_must(s, gx_body_create(desc, &s->body, &s->failure), "body");
+    scene_must(s, gx_body_view(s->body, &s->view, &s->failure), "view");
+    s->first_copies = s->view.copy_count;
+}
+
 /* The body, of s->mesh by s->body_desc */
 static inline void scene_make(scene *s) {
     gx_body_desc *desc = &s->body_desc;
@@ -351,14 +363,101 @@ static inline void scene_make(scene *s) {
     desc->node_count = s->mesh.node_count;
     desc->elements = s->mesh.elements;
     desc->element_count = s->mesh.element_count;
-    desc->allocator.allocate = scene_allocate;
-    desc->allocator.release = scene_release;
-    desc->allocator.reallocate = scene_reallocate;
-    desc->allocator.user = &s->memory;
-    desc->clock = gxio_seconds;
-    scene_must(s, gx_body_create(desc, &s->body, &s->failure), s->mesh_name);
-    scene_must(s, gx_body_view(s->body, &s->view, &s->failure), "view");
-    s->first_copies = s->view.copy_count;
+    scene_create(s);
+}
+
+typedef struct scene_face {
+    uint32_t nodes[3], corners[3]; /* in order; as the element turns them, outward */
+} scene_face;
+
+static inline int scene_compare_faces(const void *a, const void *b) {
+    return memcmp(a, b, 3 * sizeof(uint32_t)); /* equal ones beside each other, in any order */
+}
+
+/* The outer surface of a mesh: the faces that one element has */
+static inline gxio_surface scene_surface_of(scene *s, const gxio_mesh *mesh) {
+    static const int face[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+    const size_t count = 4 * mesh->element_count;
+    scene_face *faces = (scene_face *)scene_array(s, count, sizeof *faces);
+    uint32_t *vertex = (uint32_t *)scene_array(s, mesh->node_count, sizeof *vertex); /* + 1 */
+    gxio_surface surface;
+    size_t f;
+    int i, k;
+    memset(&surface, 0, sizeof surface);
+    for (f = 0; f < count; f++)
+        for (i = 0; i < 3; i++) {
+            const uint32_t node = mesh->elements[f / 4 * 4 + (size_t)face[f % 4][i]];
+            faces[f].corners[i] = node;
+            for (k = i; k > 0 && faces[f].nodes[k - 1] > node; k--) faces[f].nodes[k] = faces[f].nodes[k - 1];
+            faces[f].nodes[k] = node;
+        }
+    qsort(faces, count, sizeof *faces, scene_compare_faces);
+    for (f = 0; f < count; f++) {
+        const uint32_t *corner = faces[f].corners;
+        if (f + 1 < count && scene_compare_faces(&faces[f], &faces[f + 1]) == 0) {
+            f++;
+            continue;
+        }
+        for (i = 0; i < 3; i++) {
+            const double *x = mesh->positions + 3 * (size_t)corner[i];
+            if (vertex[corner[i]]) continue;
+            scene_must(s, gxio_add_vertex(&surface, x[0], x[1], x[2]) ? GX_OK : GX_ERROR_MEMORY, "surface");
+            vertex[corner[i]] = (uint32_t)surface.vertex_count;
+        }
+        scene_must(s,
+                   gxio_add_triangle(&surface, vertex[corner[0]] - 1, vertex[corner[1]] - 1, vertex[corner[2]] - 1, 0)
+                       ? GX_OK
+                       : GX_ERROR_MEMORY,
+                   "surface");
+    }
+    free(vertex);
+    free(faces);
+    return surface;
+}
+
+/* Volume inside of a closed surface, m3 */
+static inline double scene_volume_inside(const gxio_surface *surface) {
+    double sum = 0.0;
+    size_t t;
+    for (t = 0; t < surface->triangle_count; t++) {
+        const double *a = surface->vertices + 3 * (size_t)surface->triangles[3 * t],
+                     *b = surface->vertices + 3 * (size_t)surface->triangles[3 * t + 1],
+                     *c = surface->vertices + 3 * (size_t)surface->triangles[3 * t + 2];
+        sum += a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+               a[2] * (b[0] * c[1] - b[1] * c[0]);
+    }
+    return sum / 6.0;
+}
+
+/* The body of closed surfaces, by s->body_desc: surface i is of material i, cells: along the longest side. s->mesh
+   becomes its grid. */
+static inline void scene_make_of(scene *s, const gxio_surface *surfaces, size_t count, uint32_t cells) {
+    gx_surface *given = (gx_surface *)scene_array(s, count, sizeof *given);
+    gx_shape shape;
+    size_t i;
+    if (s->trace) scene_misuse(s, "--trace", "is for scenes of a mesh");
+    memset(&shape, 0, sizeof shape);
+    for (i = 0; i < count; i++) {
+        given[i].vertices = surfaces[i].vertices;
+        given[i].vertex_count = surfaces[i].vertex_count;
+        given[i].triangles = surfaces[i].triangles;
+        given[i].triangle_count = surfaces[i].triangle_count;
+        given[i].material = (uint32_t)i;
+    }
+    shape.surfaces = given;
+    shape.surface_count = count;
+    shape.cells = cells;
+    s->body_desc.shape = &shape;
+    scene_create(s);
+    s->body_desc.shape = NULL;
+    free(given);
+    gxio_mesh_release(&s->mesh);
+    s->mesh.node_count = s->view.node_count;
+    s->mesh.element_count = s->view.element_count;
+    s->mesh.positions = (double *)scene_array(s, s->mesh.node_count, 3 * sizeof(double));
+    s->mesh.elements = (uint32_t *)scene_array(s, s->mesh.element_count, 4 * sizeof(uint32_t));
+    memcpy(s->mesh.positions, s->view.positions, s->mesh.node_count * 3 * sizeof(double));
+    memcpy(s->mesh.elements, s->view.elements, s->mesh.element_count * 4 * sizeof(uint32_t));
 }
 
 /* Holds what lies in one of the regions. */
@@ -519,21 +618,36 @@ static inline void scene_record(scene *s, const gx_surface *surface) {
     s->cut_triangles += surface->triangle_count;
 }
 
-static inline void scene_cut_body(scene *s, const gx_surface *surfaces, size_t count) {
+/* A cut, and what it took */
+static inline void scene_take_cut(scene *s, const gx_cut_desc *desc) {
     const double start = gxio_seconds(NULL);
-    gx_cut_desc desc;
     gx_cut_report report;
-    size_t i;
-    memset(&desc, 0, sizeof desc);
-    desc.surfaces = surfaces;
-    desc.surface_count = count;
-    scene_must(s, gx_body_cut(s->body, &desc, &report, &s->failure), "cut");
+    scene_must(s, gx_body_cut(s->body, desc, &report, &s->failure), "cut");
     s->frame_cut += gxio_seconds(NULL) - start;
     s->frame_seconds[SCENE_ARRANGEMENT] += report.seconds_arrangement;
     s->frame_seconds[SCENE_ENRICHMENT] += report.seconds_enrichment;
     s->frame_seconds[SCENE_INTEGRALS] += report.seconds_integrals;
     s->looked = 0;
+}
+
+static inline void scene_cut_body(scene *s, const gx_surface *surfaces, size_t count) {
+    gx_cut_desc desc;
+    size_t i;
+    memset(&desc, 0, sizeof desc);
+    desc.surfaces = surfaces;
+    desc.surface_count = count;
+    scene_take_cut(s, &desc);
     for (i = 0; i < count; i++) scene_record(s, &surfaces[i]);
+}
+
+/* Separates a material from those that adjoin it. */
+static inline void scene_peel(scene *s, uint32_t material) {
+    const uint32_t pair[2] = {material, GX_ANY_MATERIAL};
+    gx_cut_desc desc;
+    memset(&desc, 0, sizeof desc);
+    desc.release = pair;
+    desc.release_count = 1;
+    scene_take_cut(s, &desc);
 }
 
 /* Cuts the body, now, by all surfaces at once. */

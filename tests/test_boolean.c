@@ -65,6 +65,18 @@ static int same_number(const gxb_num *a, big b) {
     return 1;
 }
 
+/* limbs times 2^power */
+static big big_of_limbs(const gxb_limb *limb, uint32_t count, int power) {
+    big sum = big_zero();
+    uint32_t i, half;
+    for (i = 0; i < count; i++)
+        for (half = 0; half < GXB_LIMB_BITS / 32; half++) {
+            const double word = (double)(uint32_t)((uint64_t)limb[i] >> 32 * half);
+            sum = big_add(sum, big_scale(big_from_double(word), power + (int)(i * GXB_LIMB_BITS + 32 * half)));
+        }
+    return sum;
+}
+
 START_TEST(numbers_are_exact) {
     pc_random r = seeded((uint64_t)_i + 1);
     int i;
@@ -121,6 +133,53 @@ START_TEST(numbers_become_doubles) {
 }
 END_TEST
 
+/* A number from 0 to 1: any, 0, 1, or near one that is given */
+static gxb_fixed random_fixed(pc_random *r, const gxb_fixed *near) {
+    const uint32_t top = GXB_FIXED_LIMBS - 1, kind = pc_below(r, 8);
+    gxb_fixed x;
+    uint32_t i;
+    memset(&x, 0, sizeof x);
+    if (kind == 0) return x;
+    x.d[top] = (gxb_limb)1 << (GXB_FIXED_BITS % GXB_LIMB_BITS);
+    if (kind == 1) return x;
+    if (kind < 5 && near != NULL) { /* with other low bits */
+        x = *near;
+        for (i = pc_below(r, GXB_FIXED_LIMBS); i < GXB_FIXED_LIMBS; i++) {
+            x.d[0] ^= (gxb_limb)pc_below(r, 4);
+            if (i < top) x.d[i] ^= (gxb_limb)pc_next(r);
+        }
+        return x;
+    }
+    for (i = 0; i <= top; i++) x.d[i] = (gxb_limb)pc_next(r);
+    x.d[top] &= ((gxb_limb)1 << (GXB_FIXED_BITS % GXB_LIMB_BITS)) - 1;
+    return x;
+}
+
+START_TEST(determinants_of_fixed_numbers) {
+    pc_random r = seeded((uint64_t)_i + 1);
+    int i;
+    for (i = 0; i < 10000; i++) {
+        const rat_mark mark = rat_arena_mark();
+        gxb_fixed x[4][3];
+        big v[4][3], cross[3], det;
+        uint32_t n, k;
+        double d;
+        for (n = 0; n < 4; n++)
+            for (k = 0; k < 3; k++) {
+                x[n][k] = random_fixed(&r, n == 0 ? NULL : &x[pc_below(&r, n)][k]);
+                v[n][k] = big_of_limbs(x[n][k].d, GXB_FIXED_LIMBS, -GXB_FIXED_BITS);
+            }
+        for (n = 1; n < 4; n++)
+            for (k = 0; k < 3; k++) v[n][k] = big_sub(v[n][k], v[0][k]);
+        big_cross(v[2], v[3], cross);
+        det = big_dot(v[1], cross);
+        d = gxb_fixed_determinant(x[0], x[1], x[2], x[3]);
+        assert_that(big_compare_abs(big_sub(big_from_double(d), det), big_scale(det, -51)) <= 0, "case %d: %a", i, d);
+        rat_arena_release(mark);
+    }
+}
+END_TEST
+
 /* 2^power */
 static void power_of_two(gxb_num *a, int power) {
     GXB_NUM(b);
@@ -144,6 +203,100 @@ START_TEST(numbers_beyond_doubles) {
     ck_assert(gxb_num_ratio(&a, &b) >= 0x1p1000 && gxb_num_ratio(&a, &b) < infinity);
     gxb_num_sub(&c, &b, &a);
     ck_assert(gxb_num_to_double(&c) == -infinity && gxb_num_ratio(&c, &b) <= -0x1p1000);
+}
+END_TEST
+
+/* A coordinate of the frame with all the bits that it may have: 2^-180 to 2^129 */
+static void widest_coordinate(pc_random *r, gxb_num *x) {
+    GXB_NUM(high);
+    GXB_NUM(low);
+    gxb_num_set(&high, (pc_below(r, 2) ? 1 : -1) * (2 - ldexp((double)(1 + pc_below(r, 4)), -52)), 128);
+    gxb_num_set(&low, 1 + ldexp((double)(1 + 2 * pc_below(r, 1000)), -52), -128);
+    if (pc_below(r, 8) == 0) high.sign = 0, high.exp = 0, high.n = 0;
+    gxb_num_add(x, &high, &low);
+}
+
+static void widest_point(pc_random *r, gxbp_vec *p) {
+    int k;
+    gxbp_vec_init(p);
+    for (k = 0; k < 3; k++) widest_coordinate(r, &p->c[k]);
+    gxb_num_set(&p->c[3], 1, 0);
+}
+
+/* Products have the limbs of their factors, sums one more than the longer summand, before zeros are trimmed off. */
+static void check_room(const gxb_num *c, int count, size_t room, const char *what) {
+    int k;
+    for (k = 0; k < count; k++) assert_that(c[k].n + 1 <= room, "%s: %u limbs", what, c[k].n);
+}
+
+/* The longest numbers by which points and planes are made fit into their room. */
+START_TEST(numbers_have_room) {
+    pc_random r = seeded(1);
+    gxbp_large plane[3], line, point, cross, side;
+    const size_t room = sizeof((gxbp_vec *)0)->limbs[0] / sizeof(gxb_limb), large = GXB_NUM_LIMBS;
+    int i, k;
+    for (i = 0; i < 2000; i++) {
+        gxbp_vec p[3], rounded;
+        for (k = 0; k < 3; k++) {
+            widest_point(&r, &p[0]);
+            widest_point(&r, &p[1]);
+            widest_point(&r, &p[2]);
+            gxbp_large_init(&plane[k]);
+            gxbp_exact_plane(plane[k].c, p[0].c, p[1].c, p[2].c);
+            check_room(plane[k].c, 4, room, "a plane");
+        }
+        gxbp_large_init(&line);
+        gxbp_exact_line_plane(line.c, p[0].c, p[1].c, plane[0].c);
+        check_room(line.c, 4, room, "a line and a plane");
+        gxbp_large_init(&cross);
+        gxbp_num_cross(cross.c, plane[0].c, plane[1].c);
+        check_room(cross.c, 3, room, "a line's direction");
+        gxbp_large_init(&point);
+        gxbp_exact_three_planes(point.c, plane[0].c, plane[1].c, plane[2].c);
+        check_room(point.c, 4, room, "three planes");
+        gxbp_large_init(&side);
+        gxbp_exact_side(&side.c[0], point.c, plane[0].c);
+        ck_assert_int_eq(side.c[0].sign, 0); /* it is in its plane */
+        for (k = 0; k < 3; k++) widest_point(&r, &p[k]);
+        gxbp_exact_plane(plane[0].c, p[0].c, p[1].c, p[2].c);
+        gxbp_exact_side(&side.c[0], point.c, plane[0].c);
+        check_room(side.c, 1, large, "a side");
+        ck_assert_int_eq(gxbp_orient_exact(point.c, line.c, point.c, 0, 1), 0);
+        gxbp_vec_init(&rounded);
+        for (k = 0; k < 3; k++) gxbp_num_copy(&rounded.c[k], &point.c[k], 1);
+        for (k = 0; k < 3; k++) {
+            gxbp_num_divide(&side.c[k], &rounded.c[k], &point.c[3], 4);
+            check_room(&rounded.c[k], 1, room, "a remainder");
+            check_room(&side.c[k], 1, 32, "a quotient");
+        }
+    }
+}
+END_TEST
+
+/* A quotient whose second digit lies far below the first has no more bits than others, and is as exact. */
+START_TEST(quotients_are_short) {
+    GXB_NUM(one);
+    GXB_NUM(tiny);
+    GXB_NUM(sum);
+    GXB_NUM(three);
+    GXB_NUM(quotient);
+    int gap;
+    gxb_num_set(&one, 1, 0);
+    gxb_num_set(&three, 3, 0);
+    for (gap = 10; gap < 900; gap += 10) {
+        GXB_NUM(product);
+        GXB_NUM(error);
+        GXB_NUM(bound);
+        gxb_num_set(&tiny, 1, -gap);
+        gxb_num_add(&sum, &three, &tiny);
+        gxb_num_add(&product, &three, &tiny);
+        gxbp_num_divide(&quotient, &sum, &three, 4); /* 1 + 2^-gap / 3 */
+        ck_assert_uint_le(quotient.n * GXB_LIMB_BITS, 250 + 2 * GXB_LIMB_BITS);
+        gxb_num_mul(&sum, &quotient, &three);
+        gxb_num_sub(&error, &sum, &product);
+        gxb_num_set(&bound, 3, -180);
+        assert_that(gxbp_num_compare_magnitude(&error, &bound) < 0 || error.sign == 0, "gap %d", gap);
+    }
 }
 END_TEST
 
@@ -1009,6 +1162,17 @@ static void check_walls(const model *m, uint32_t cut) {
     }
 }
 
+/* Pairs of doubles tell the right side, or none. */
+enum { UNTOLD = 2 }; /* as the header has it */
+static void check_pair_side(const model *m, uint32_t point, uint32_t plane) {
+    const gxb_cpoint *p = &m->cx->store.points[point];
+    const int sign = p->kind == GXB_EXPLICIT   ? UNTOLD
+                   : p->kind == GXB_LINE_PLANE ? gxbp_pair_line_side(m->cx, p->def, plane)
+                                               : gxbp_pair_planes_side(m->cx, p->def, plane);
+    assert_that(sign == UNTOLD || sign == pc_exact_side(&m->points[point], &m->planes[plane]),
+                "by pairs: point %u plane %u", point, plane);
+}
+
 /* The kernel's signs of all points and planes against the oracle's. */
 static void check_signs(const model *m, pc_random *r, int count) {
     int i;
@@ -1019,6 +1183,7 @@ static void check_signs(const model *m, pc_random *r, int count) {
         const pc_point x = pc_exact_explicit(m->s->nodes[node], m->s->nodes[0]);
         assert_that(gxb_complex_side(m->cx, point, plane) == pc_exact_side(&m->points[point], &m->planes[plane]),
                     "point %u plane %u", point, plane);
+        check_pair_side(m, point, plane);
         assert_that(gxb_complex_compare(m->cx, point, (int)axis, m->s->nodes[node][axis]) ==
                         pc_exact_compare(&m->points[point], &x, (int)axis),
                     "point %u against node %u on axis %u", point, node, axis);
@@ -1036,14 +1201,16 @@ static void check_barycentric(const model *m, uint32_t element) {
         for (i = 0; i < count; i++) {
             const uint32_t point = edge_start(cx, cx->pool[cx->facets[cx->pool[first + i]].loop]);
             double lambda[4];
+            gxb_fixed fixed[4];
             gxbp_vec fine;
             gxbp_vec_init(&fine);
+            gxb_complex_barycentric_fixed(cx, point, element, fixed);
             gxb_complex_barycentric(cx, point, element, lambda);
             gxb_complex_barycentric_fine(cx, point, element, fine.c);
             for (k = 0; k < 4; k++) {
                 double face[3][3];
                 pc_plane plane;
-                big num, den, error, q = big_zero();
+                big num, den, error, q;
                 for (j = 0; j < 3; j++) memcpy(face[j], m->s->nodes[v[tet_faces[k][j]]], sizeof face[j]);
                 plane = pc_exact_plane(face, m->s->nodes[0]);
                 num = pc_scaled_height(&m->points[point], &plane);
@@ -1052,17 +1219,14 @@ static void check_barycentric(const model *m, uint32_t element) {
                 error = big_sub(big_mul(big_from_double(lambda[k]), den), num);
                 assert_that(big_compare_abs(error, big_scale(num, -49)) <= 0, "point %u element %u lambda %u = %a",
                             point, element, k, lambda[k]);
-                for (j = 0; j < fine.c[k].n; j++) {
-                    const gxb_limb limb = fine.c[k].d[j];
-                    const int32_t base = (fine.c[k].exp + (int32_t)j) * GXB_LIMB_BITS;
-                    q = big_add(q, big_mul(big_from_double((double)(uint32_t)limb), big_from_double(pc_power(base))));
-                    if (GXB_LIMB_BITS == 64)
-                        q = big_add(q, big_mul(big_from_double((double)((uint64_t)limb >> 32)),
-                                               big_from_double(pc_power(base + 32))));
-                }
+                q = big_of_limbs(fine.c[k].d, fine.c[k].n, fine.c[k].exp * GXB_LIMB_BITS);
                 q.sign = q.sign == 0 ? 0 : fine.c[k].sign;
                 error = big_sub(big_mul(q, den), num);
                 assert_that(big_compare_abs(error, big_scale(num, -180)) <= 0, "point %u element %u: fine lambda %u",
+                            point, element, k);
+                q = big_of_limbs(fixed[k].d, GXB_FIXED_LIMBS, -GXB_FIXED_BITS);
+                error = big_sub(big_mul(q, den), num);
+                assert_that(big_compare_abs(error, big_scale(den, -179)) <= 0, "point %u element %u: fixed lambda %u",
                             point, element, k);
             }
         }
@@ -2040,7 +2204,10 @@ static Suite *boolean_suite(void) {
     tcase_add_loop_test(numbers, numbers_are_exact, 0, 2);
     tcase_add_loop_test(numbers, numbers_become_doubles, 0, 2);
     tcase_add_test(numbers, numbers_beyond_doubles);
+    tcase_add_loop_test(numbers, determinants_of_fixed_numbers, 0, 2);
     tcase_add_test(numbers, numbers_take_a_shift);
+    tcase_add_test(numbers, numbers_have_room);
+    tcase_add_test(numbers, quotients_are_short);
     tcase_add_test(predicates, orientation_is_as_documented);
     tcase_add_loop_test(predicates, predicates_have_the_right_sign, 0, 4);
     tcase_add_loop_test(predicates, inherited_errors_stay_within_bounds, 0, 2);

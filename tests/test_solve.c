@@ -408,6 +408,91 @@ START_TEST(operator_is_the_derivative_of_forces) {
 }
 END_TEST
 
+/* Elements that share no copy: those of a chunk then have more nodes than a pass copies at once. The same 64 elements
+   again and again, at the same place. */
+enum { LOOSE = 64 };
+
+static scene loose_elements(size_t count) {
+    static const double corner[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    scene s;
+    size_t e, i, k;
+    memset(&s, 0, sizeof s);
+    s.material = (gxs_material *)zeroed(1, sizeof *s.material);
+    s.elements = (gxs_element *)zeroed(count, sizeof *s.elements);
+    s.held = (uint8_t *)zeroed(4 * count, 1);
+    s.rest = (double *)zeroed(12 * count, sizeof(double));
+    s.displacement = (double *)zeroed(12 * count, sizeof(double));
+    s.velocity = (double *)zeroed(12 * count, sizeof(double));
+    s.forces = (double *)zeroed(12 * count, sizeof(double));
+    s.material->young = 1e5;
+    s.material->poisson = 0.4;
+    for (e = 0; e < count; e++) {
+        if (e % LOOSE == 0) seed(3);
+        for (i = 0; i < 4; i++) {
+            s.elements[e].copy[i] = (uint32_t)(4 * e + i);
+            for (k = 0; k < 3; k++) {
+                s.rest[12 * e + 3 * i + k] =
+                    3 * (double)(e % LOOSE % 8 * (k == 0) + e % LOOSE / 8 * (k == 1)) + corner[i][k] + 0.1 * uniform();
+                s.displacement[12 * e + 3 * i + k] = 0.1 * uniform();
+                s.velocity[12 * e + 3 * i + k] = uniform();
+                s.forces[12 * e + 3 * i + k] = uniform();
+            }
+        }
+        make_element(&s.elements[e], s.rest, 1000);
+    }
+    s.model.copy_count = 4 * count;
+    s.model.positions = s.rest;
+    s.model.elements = s.elements;
+    s.model.element_count = count;
+    s.model.materials = s.material;
+    s.model.material_count = 1;
+    s.model.held = s.held;
+    return s;
+}
+
+/* What each of LOOSE elements does does not depend on how many others there are. _i: 0, 1: gradients are made from
+   positions or given; 2: an explicit step */
+START_TEST(chunks_of_many_nodes) {
+    double *product[2];
+    scene s[2];
+    gxs_solver *solver[2];
+    gxs_step_desc step;
+    gxs_step_report report[2];
+    size_t i, side;
+    memset(&step, 0, sizeof step);
+    step.dt = 1e-3;
+    step.newton_iterations = 8;
+    step.cg_tolerance = 1e-6;
+    if (_i == 2) step.integrator = GXS_EXPLICIT;
+    for (side = 0; side < 2; side++) {
+        s[side] = loose_elements(side == 0 ? LOOSE : 6 * LOOSE);
+        if (_i == 1) /* another gradient than that of the positions, by its last bits */
+            for (i = 0; i < s[side].model.element_count; i++) s[side].elements[i].gradient[2][1] *= 1 + 1e-9;
+        solver[side] = solver_make();
+        product[side] = (double *)zeroed(3 * s[side].model.copy_count, sizeof(double));
+        ck_assert_int_eq(gxs_solver_set_model(solver[side], &s[side].model, NULL), GX_OK);
+        ck_assert_int_eq(gxs_solver_linearise(solver[side], s[side].displacement, 1e4, 0, NULL), GX_OK);
+        ck_assert_int_eq(gxs_solver_product(solver[side], s[side].forces, product[side], NULL), GX_OK);
+        ck_assert_int_eq(
+            gxs_solver_step(solver[side], &step, s[side].displacement, s[side].velocity, &report[side], NULL), GX_OK);
+    }
+    ck_assert_uint_eq(solver[0]->system->mesh.chunks[0].node_count, 4 * LOOSE); /* below GXSP_NEAR */
+    ck_assert_uint_eq(solver[1]->system->mesh.chunks[0].node_count, 24 * LOOSE);
+    ck_assert(report[0].substeps == report[1].substeps && (report[0].substeps > 0) == (_i == 2));
+    for (i = 0; i < 12 * LOOSE; i++) {
+        ck_assert(product[0][i] == product[1][i]);
+        assert_that(fabs(s[0].displacement[i] - s[1].displacement[i]) <= 1e-9, "%zu: %.17g %.17g", i,
+                    s[0].displacement[i], s[1].displacement[i]);
+        if (_i == 2) ck_assert(s[0].displacement[i] == s[1].displacement[i] && s[0].velocity[i] == s[1].velocity[i]);
+    }
+    for (side = 0; side < 2; side++) {
+        gxs_solver_destroy(solver[side]);
+        scene_free(&s[side]);
+        free(product[side]);
+    }
+}
+END_TEST
+
 /* Masters' motion to followers, and followers' forces to masters */
 static void follow(const gxs_constraint *ties, size_t count, double *x) {
     size_t t, k;
@@ -2000,6 +2085,7 @@ static Suite *solve_suite(void) {
     tcase_add_loop_test(model, operator_is_the_derivative_of_forces, 0, KINDS);
     tcase_add_loop_test(model, operator_acts_on_what_can_move, 0, 4 * KINDS);
     tcase_add_loop_test(model, operator_is_linear_and_semidefinite, 0, KINDS);
+    tcase_add_loop_test(model, chunks_of_many_nodes, 0, 3);
     tcase_add_loop_test(model, small_strains_are_not_denormal, 0, GXS_CUSTOM);
     tcase_add_test(model, operator_lasts_until_the_next_step);
     tcase_add_loop_test(model, multigrid_iterations_do_not_grow, 0, 2);

@@ -690,13 +690,10 @@ START_TEST(refusals) {
     ck_assert_int_eq(gx_body_contact(NULL, &desc, &failure), GX_ERROR_ARGUMENT);
     ck_assert_str_eq(failure.field, "body");
     {
-        gx_body_desc thin = desc_of(&w);
+        gx_body_desc plain = desc_of(&w);
         gx_body *other = NULL;
-        thin.affine_below = 0.5;
         desc = contact_desc(0);
-        ck_assert_int_eq(gx_body_create(&thin, &other, NULL), GX_OK);
-        ck_assert_int_eq(gx_body_contact(other, &desc, &failure), GX_ERROR_ARGUMENT);
-        ck_assert_str_eq(failure.field, "affine_below");
+        ck_assert_int_eq(gx_body_create(&plain, &other, NULL), GX_OK);
         ck_assert_int_eq(gx_body_contact(body, &desc, NULL), GX_OK);
         ck_assert_int_eq(gx_body_restore(body, other, NULL), GX_OK); /* which has none */
         ck_assert_int_eq(gx_body_contacts(body, NULL, 0, &count, &failure), GX_ERROR_SEQUENCE);
@@ -734,6 +731,12 @@ START_TEST(refusals) {
     ck_assert_int_eq(gx_body_step(body, &step, NULL, &failure), GX_ERROR_ARGUMENT);
     ck_assert_str_eq(failure.field, "pairs");
     step.pair_count = 0;
+    for (i = 0; i < 2; i++) {
+        step.dt = i == 0 ? NAN : -0.01;
+        ck_assert_int_eq(gx_body_step(body, &step, NULL, &failure), i == 0 ? GX_ERROR_NOT_FINITE : GX_ERROR_ARGUMENT);
+        ck_assert_str_eq(failure.field, "dt");
+    }
+    step.dt = 0.01;
     ck_assert_int_eq(gx_body_contacts(body, NULL, 0, &count, &failure), GX_OK);
     ck_assert_uint_eq(count, 0);
     take(body, &step);
@@ -747,7 +750,8 @@ START_TEST(refusals) {
 }
 END_TEST
 
-/* Pairs of the caller stand beside those of contact: the same as by anchors without contact. */
+/* Pairs of the caller stand beside those of contact: the same as without contact. By anchors, by copies, and by copies
+   of which nobody asks for slips and forces. */
 START_TEST(beside_the_callers_pairs) {
     static const double up[3] = {0, 0, 1}, apart[3] = {0, 0, 2}, still[3] = {0, 0, 0};
     workload w;
@@ -766,28 +770,65 @@ START_TEST(beside_the_callers_pairs) {
     pair.friction = 0.3;
     step.pairs = &pair;
     step.pair_count = 1;
-    step.pair_anchors = anchors;
+    if (_i == 0) step.pair_anchors = anchors;
     step.gravity[0] = 1;
     for (i = 0; i < 2; i++) {
+        double own[8];
+        uint32_t copies[8];
         body[i] = cut_cube(&w, 2, up, 1.5);
         for (k = 0; k < 2; k++) {
             ck_assert_int_eq(gx_body_locate(body[i], x[k], 1, &hit, NULL), GX_OK);
             ck_assert_int_eq(gx_hit_anchor(body[i], &hit, &anchors[k], NULL), GX_OK);
         }
+        for (k = 0; k < 8 && _i > 0; k++) { /* as gx_body_step makes it of anchors */
+            gxs_point point;
+            ck_assert_int_eq(gx_body_anchor_point(body[i], &anchors[k / 4], &point, NULL, NULL), GX_OK);
+            copies[k] = k % 4 < (int)point.count ? point.copy[k % 4] : point.copy[0];
+            own[k] = k % 4 < (int)point.count ? (k < 4 ? 1 : -1) * point.weight[k % 4] : 0;
+        }
+        for (k = 0; k < 3 && _i > 0; k++) pair.point.position[k] = x[0][k] - x[1][k];
+        if (_i > 0) pair.point.copies = copies, pair.point.weights = own, pair.point.count = 8;
+        pair.point.epoch = step.epoch = view_of(body[i]).epoch;
         move_pieces(body[i], 1, apart, still);
         hold_below(body[i], 0.1);
         if (i == 0) switch_on(body[i], 0.5);
-        step.pair_slips = slips[i];
-        step.pair_forces = forces[i];
+        step.pair_slips = _i < 2 ? slips[i] : NULL;
+        step.pair_forces = _i < 2 ? forces[i] : NULL;
         for (frame = 0; frame < 5; frame++) take(body[i], &step);
         if (i == 0) wl_free(&w);
     }
-    ck_assert_double_gt(forces[0][2], 0);
-    ck_assert(memcmp(forces[0], forces[1], sizeof forces[0]) == 0);
-    ck_assert(memcmp(slips[0], slips[1], sizeof slips[0]) == 0);
+    if (_i < 2) {
+        ck_assert_double_gt(forces[0][2], 0);
+        ck_assert(memcmp(forces[0], forces[1], sizeof forces[0]) == 0);
+        ck_assert(memcmp(slips[0], slips[1], sizeof slips[0]) == 0);
+    }
     ck_assert(gx_body_state_hash(body[0]) == gx_body_state_hash(body[1]));
     for (i = 0; i < 2; i++) gx_body_destroy(body[i]);
     wl_free(&w);
+}
+END_TEST
+
+/* Zeros stand for the numbers that gx_contact_desc tells; others are others. */
+START_TEST(zeros_are_defaults) {
+    static const double up[3] = {0, 0, 1};
+    static const double settings[3][2] = {{0, 0}, {10, 0.5}, {5, 0.5}};
+    uint64_t hash[3];
+    int i, frame;
+    for (i = 0; i < 3; i++) {
+        workload w;
+        gx_body *body = cut_cube(&w, 2, up, 1.5);
+        gx_step_desc step = falling(0.01);
+        gx_contact_desc desc = contact_desc(0.3);
+        desc.stiffness = settings[i][0];
+        desc.depth = settings[i][1];
+        hold_below(body, 0.1);
+        ck_assert_int_eq(gx_body_contact(body, &desc, NULL), GX_OK);
+        for (frame = 0; frame < 3; frame++) take(body, &step);
+        hash[i] = gx_body_state_hash(body);
+        gx_body_destroy(body);
+        wl_free(&w);
+    }
+    ck_assert(hash[0] == hash[1] && hash[0] != hash[2]);
 }
 END_TEST
 
@@ -1346,7 +1387,8 @@ static Suite *suite(void) {
     tcase_add_loop_test(tests, a_body_is_not_its_own_contact, 0, 2);
     tcase_add_test(tests, lips_meet);
     tcase_add_test(tests, refusals);
-    tcase_add_test(tests, beside_the_callers_pairs);
+    tcase_add_loop_test(tests, beside_the_callers_pairs, 0, 3);
+    tcase_add_test(tests, zeros_are_defaults);
     tcase_add_loop_test(tests, without_memory, 0, 4);
     ADD_SOME(tests, goes_on_alike, 15);
     tcase_add_loop_test(tests, sleeps_on_after_loading, 0, 2);

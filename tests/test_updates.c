@@ -1,7 +1,7 @@
 /* test_updates.c - a cut changes the solver's model instead of making it again (gxs_solver_update). The motion is
    the same as with a model that is set whole after each cut, with no more iterations, the same bits in any order of
    jobs and after a save. Sleepers wake. Bad changes, memory that runs out. The size of solvers. Coarse functions of
-   small components. */
+   small components. The same for models with affine copies. */
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
 #include "body.h"
@@ -654,6 +654,7 @@ END_TEST
 
 START_TEST(lost_copies_are_named) {
     changing c;
+    uint32_t *affine;
     start_changing(&c);
     /* A copy is lost that elements have. */
     c.change.copy_count--;
@@ -661,6 +662,19 @@ START_TEST(lost_copies_are_named) {
     c.change.copy_count++;
     expect_change(&c, GX_ERROR_SEQUENCE, "gxs_solver_set_model", SIZE_MAX); /* no model is set any more */
     expect_step(&c, GX_ERROR_SEQUENCE);
+    set_again(&c);
+    /* affine copies: hidden vectors that are not there, or an element's; the first ones come */
+    affine = (uint32_t *)malloc(c.model.copy_count * sizeof *affine);
+    memset(affine, 0xff, c.model.copy_count * sizeof *affine);
+    c.change.affine = affine;
+    affine[0] = (uint32_t)c.model.copy_count - 2;
+    expect_change(&c, GX_ERROR_INDEX, "affine", 0);
+    affine[0] = c.elements[0].copy[0] / 3 * 3;
+    expect_change(&c, GX_ERROR_ARGUMENT, affine[0] == 0 ? "affine" : "elements.copy", 0);
+    affine[0] = GXS_NOT_AFFINE;
+    expect_change(&c, GX_ERROR_LIMIT, NULL, SIZE_MAX);
+    free(affine);
+    c.change.affine = NULL;
     set_again(&c);
     /* two copies that are one */
     c.origins[7] = 6;
@@ -788,6 +802,163 @@ START_TEST(some_solvers_take_no_changes) {
 }
 END_TEST
 
+/* ---- affine copies ---- */
+
+/* A block of some layers of elements, and cuts: two slices off it, a sheet that grows through it, others that end
+   inside and cross, a plane through nodes */
+static workload sheets_with_cuts(int seed, int layers) {
+    workload w = grid(6, 3, (uint32_t)layers, seed % 2 ? 6 : 5);
+    const double q[3] = {4.13, 2.21, 0.93}, m[3] = {0.1, 1, 0.2};
+    int i;
+    random_seed((uint64_t)seed);
+    add_axis_plane(&w, 2, 0.37);
+    add_axis_plane(&w, 2, 0.62);
+    for (i = 0; i < 3; i++) {
+        const double x = 2 * i - 0.63, z = 0.8, a[3] = {x, -1, z}, b[3] = {x + 2, -1, z}, c[3] = {x + 2, 5, z},
+                     d[3] = {x, 5, z};
+        wl_add_quad(wl_add_surface(&w, 0), a, b, c, d);
+    }
+    add_plane(&w, q, m, 1.7);
+    add_plane(&w, q, m, 30);
+    return w;
+}
+
+static gx_body *affine_body(const workload *w) {
+    gx_body_desc desc = desc_of(w);
+    gx_body *body = NULL;
+    desc.affine_below = 1;
+    ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
+    return body;
+}
+
+/* As apart, of the columns of A */
+static double bent_apart(gx_body *a, gx_body *b) {
+    const gx_view of = view_of(a), to = view_of(b);
+    const double *mass = a->solver->system->model.lumped;
+    double most = 0, gap = 0;
+    size_t i;
+    for (i = 0; i < 9 * of.copy_count; i++) {
+        const double d = of.affine[i] - to.affine[i];
+        most += mass[i / 9] * of.affine[i] * of.affine[i];
+        gap += mass[i / 9] * d * d;
+    }
+    return most > 0 ? sqrt(gap / most) : 0;
+}
+
+/* Operators of both models, at rest */
+static void check_affine_operator(gx_body *changed, gx_body *whole) {
+    const size_t n = changed->solver->system->model.n;
+    double *x = (double *)calloc(12 * n, sizeof *x), *y = x + 3 * n, *z = y + 3 * n, *rest = z + 3 * n, most = 0;
+    size_t i;
+    ck_assert_uint_eq(n, whole->solver->system->model.n);
+    for (i = 0; i < 3 * n; i++) x[i] = sin(0.37 * (double)(i * i % 1009));
+    ck_assert_int_eq(gxs_solver_linearise(changed->solver, rest, 100, 0, NULL), GX_OK);
+    ck_assert_int_eq(gxs_solver_linearise(whole->solver, rest, 100, 0, NULL), GX_OK);
+    ck_assert_int_eq(gxs_solver_product(changed->solver, x, y, NULL), GX_OK);
+    ck_assert_int_eq(gxs_solver_product(whole->solver, x, z, NULL), GX_OK);
+    for (i = 0; i < 3 * n; i++) most = fmax(most, fabs(z[i]));
+    for (i = 0; i < 3 * n; i++) ck_assert_msg(fabs(y[i] - z[i]) <= 1e-6 * most, "%g and %g", y[i], z[i]);
+    free(x);
+}
+
+/* Numbers of level 1 that elements with affine copies add, largest difference relative to both diagonals */
+static double bent_difference(const gxsp_level *level, const double *block, const double *other) {
+    uint32_t i, k;
+    double most = 0;
+    int m;
+    for (i = 0; i < level->n; i++)
+        for (k = level->start[i]; k < level->start[i + 1]; k++) {
+            const double *own = block + 9 * (size_t)level->start[i],
+                         *to = block + 9 * (size_t)level->start[level->column[k]];
+            const double size = sqrt((own[0] + own[4] + own[8]) * (to[0] + to[4] + to[8]));
+            for (m = 0; m < 9; m++) {
+                const size_t at = 9 * (size_t)k + (size_t)m;
+                most = fmax(most, fabs(block[at] - other[at]) / (size + 1e-300));
+            }
+        }
+    return most;
+}
+
+/* A cut at one end of a long plate: coarse numbers are made again there, and equal those made at the same state. */
+START_TEST(small_cuts_of_sheets_keep_coarse_numbers) {
+    workload w = grid(40, 3, 1 + _i, 5);
+    const gx_region left = gx_region_half_space(0, -1, 1e-9);
+    gx_step_desc step = step_of(0.02);
+    gx_body *body;
+    size_t c;
+    if (_i) add_axis_plane(&w, 2, 1.7); /* a slice on a thick rest */
+    for (c = 0; c < 3; c++) {
+        const double x = 39 - (double)c - 0.37, z = _i ? 1.8 : 0.4, a[3] = {x, -1, z}, b[3] = {x + 1, -1, z},
+                     d[3] = {x + 1, 5, z}, e[3] = {x, 5, z};
+        wl_add_quad(wl_add_surface(&w, 0), a, b, d, e);
+    }
+    body = affine_body(&w);
+    if (_i) cut_by(body, &w, 0, 1);
+    ck_assert_int_eq(gx_body_hold(body, &left, 1, NULL), GX_OK);
+    step.newton_iterations = 1;
+    advance(body, &step, 3);
+    for (c = (size_t)_i; c < w.surface_count; c++) {
+        gxsp_system *system = body->solver->system;
+        const double before[3] = {system->coarse.displacement[3], system->coarse.displacement[4],
+                                  system->coarse.displacement[5]};
+        const gxsp_level *level = &system->multigrid.levels[1];
+        size_t bytes;
+        double *block;
+        int collapsed;
+        ck_assert_uint_eq(system->multigrid.level_count, 2);
+        cut_by(body, &w, c, 1);
+        advance(body, &step, 1);
+        ck_assert(body->model.updated);
+        ck_assert(memcmp(before, system->coarse.displacement + 3, sizeof before) == 0); /* no step has made them */
+        ck_assert(system->coarse.rate > 0);
+        bytes = 9 * (size_t)level->start[level->n] * sizeof *block;
+        block = (double *)malloc(bytes);
+        memcpy(block, system->affine.block, bytes);
+        ck_assert(gxsp_linearise(system, system->coarse.rate, system->coarse.displacement, 0, &collapsed));
+        ck_assert(gxsp_coarse_numbers(system, system->coarse.rate));
+        ck_assert_msg(bent_difference(level, system->affine.block, block) < 3e-5, "cut %zu: %g", c,
+                      bent_difference(level, system->affine.block, block));
+        free(block);
+    }
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* Cuts of sheets change the model: the motion is that of a model set whole. */
+START_TEST(cuts_of_sheets_change_the_model) {
+    workload w = sheets_with_cuts(_i, 2 - _i);
+    gx_body *changed = affine_body(&w), *whole = affine_body(&w);
+    const gx_region left = gx_region_half_space(0, -1, 1e-9);
+    gx_step_desc step = exact_step(0.02);
+    size_t c, updates = 0;
+    step.newton_iterations = 10;
+    step.newton_tolerance = 1e-8;
+    ck_assert_int_eq(gx_body_hold(changed, &left, 1, NULL), GX_OK);
+    ck_assert_int_eq(gx_body_hold(whole, &left, 1, NULL), GX_OK);
+    for (c = 0; c < w.surface_count; c++) {
+        cut_by(changed, &w, c, 1);
+        cut_by(whole, &w, c, 1);
+        ck_assert_int_eq(gx_body_hold(whole, &left, 1, NULL), GX_OK);
+        if (c % 4 == 2) continue; /* two cuts before a step */
+        advance(changed, &step, 1);
+        advance(whole, &step, 1);
+        updates += changed->model.updated != 0;
+        ck_assert(!whole->model.updated);
+        ck_assert_uint_eq(changed->solver->system->affine.count, whole->solver->system->affine.count);
+        ck_assert_uint_eq(changed->solver->system->affine.group_count, whole->solver->system->affine.group_count);
+        ck_assert_uint_eq(changed->solver->system->model.light_count, whole->solver->system->model.light_count);
+        check_affine_operator(changed, whole);
+        ck_assert_msg(apart(changed, whole) < 1e-6, "after cut %zu: %g", c, apart(changed, whole));
+        ck_assert_msg(bent_apart(changed, whole) < 1e-3, "after cut %zu: %g", c, bent_apart(changed, whole));
+    }
+    ck_assert_uint_gt(updates, 3);
+    gx_body_destroy(changed);
+    gx_body_destroy(whole);
+    wl_free(&w);
+}
+END_TEST
+
 /* ---- memory ---- */
 
 /* The n-th allocation of the step after a cut fails, once or from then on: the body is as it was, and the step made
@@ -827,6 +998,43 @@ START_TEST(memory_may_run_out) {
     }
     ck_assert_uint_gt(failures, 50);
     gx_body_destroy(whole);
+    wl_free(&w);
+}
+END_TEST
+
+/* The same where copies are affine */
+START_TEST(memory_may_run_out_beside_sheets) {
+    workload w = grid(4, 2, 1, 5);
+    gx_body_desc desc = desc_of(&w);
+    gx_step_desc step = step_of(0.02);
+    size_t n, failures = 0;
+    add_axis_plane(&w, 2, 0.4);
+    add_axis_plane(&w, 0, 2.3);
+    desc.affine_below = 1;
+    for (n = 0;; n++) {
+        memory m = plenty();
+        gx_body *body = NULL;
+        gx_result result;
+        uint64_t hash;
+        desc.allocator = allocator_of(&m);
+        ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
+        cut_by(body, &w, 0, 1);
+        advance(body, &step, 1);
+        cut_by(body, &w, 1, 1);
+        hash = gx_body_state_hash(body);
+        fail_from(&m, n, _i);
+        result = gx_body_step(body, &step, NULL, NULL);
+        failures += m.failed != 0;
+        ck_assert_int_eq(result, m.failed ? GX_ERROR_MEMORY : GX_OK);
+        ck_assert(!m.failed || gx_body_state_hash(body) == hash);
+        never_fail(&m);
+        if (result != GX_OK) advance(body, &step, 1);
+        ck_assert(result != GX_OK || body->model.updated);
+        gx_body_destroy(body);
+        ck_assert(is_whole(&m));
+        if (result == GX_OK) break;
+    }
+    ck_assert_uint_gt(failures, 50);
     wl_free(&w);
 }
 END_TEST
@@ -889,7 +1097,7 @@ END_TEST
 /* ---- coarse functions of small components ---- */
 
 /* Appends a bar of cells of one size, apart from the others */
-static void add_bar(workload *w, double x, double size, uint32_t nx, uint32_t ny) {
+static void add_beam(workload *w, double x, double size, uint32_t nx, uint32_t ny) {
     workload bar = grid(nx, ny, 1, 6);
     const size_t nodes = w->node_count, elements = w->element_count;
     size_t i;
@@ -915,7 +1123,7 @@ START_TEST(small_pieces_beside_a_large_one) {
     gxs_step_report report;
     double *state;
     uint32_t i, iterations = 0;
-    for (i = 0; i < 50; i++) add_bar(&w, 10 + i, 0.01 + 0.01 * i, 1 + i % 3, 1 + i % 2);
+    for (i = 0; i < 50; i++) add_beam(&w, 10 + i, 0.01 + 0.01 * i, 1 + i % 3, 1 + i % 2);
     body = body_of(&w);
     ck_assert_int_eq(gx_body_model(body, &model, NULL), GX_OK);
     state = (double *)calloc(6 * model.copy_count, sizeof *state);
@@ -945,8 +1153,13 @@ END_TEST
 
 static Suite *updates_suite(void) {
     Suite *suite = suite_create("updates");
-    TCase *tests = tcase_create("updates");
+    TCase *tests = tcase_create("updates"), *sheets = tcase_create("sheets");
     tcase_set_timeout(tests, 120);
+    tcase_set_timeout(sheets, 120);
+    tcase_add_loop_test(sheets, cuts_of_sheets_change_the_model, 0, 2);
+    tcase_add_loop_test(sheets, small_cuts_of_sheets_keep_coarse_numbers, 0, 2);
+    tcase_add_loop_test(sheets, memory_may_run_out_beside_sheets, 0, 2);
+    suite_add_tcase(suite, sheets);
     tcase_add_loop_test(tests, cuts_change_the_model, 0, 6 / FEWER);
     tcase_add_loop_test(tests, changed_models_are_of_any_kind, 0, 4);
     tcase_add_loop_test(tests, small_cuts_keep_coarse_numbers, 0, 2);

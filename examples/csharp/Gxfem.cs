@@ -112,6 +112,7 @@ namespace Gxfem {
         public UIntPtr element_count;
         public IntPtr constraints;
         public UIntPtr constraint_count;
+        public IntPtr affine;
         public ulong epoch;
     }
 
@@ -597,6 +598,11 @@ namespace Gxfem {
         public int exp;
         public uint n;
         public IntPtr d;
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
+    public unsafe struct gxb_fixed {
+        public fixed ulong d[3];
     }
 
     [StructLayout(LayoutKind.Sequential)]
@@ -1179,6 +1185,9 @@ namespace Gxfem {
         public static extern void gxb_complex_barycentric_fine(IntPtr complex, uint point, uint element, IntPtr lambda);
 
         [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
+        public static extern void gxb_complex_barycentric_fixed(IntPtr complex, uint point, uint element, IntPtr lambda);
+
+        [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
         public static extern void gxb_complex_begin(IntPtr complex);
 
         [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
@@ -1348,6 +1357,9 @@ namespace Gxfem {
 
         [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
         public static extern gx_result gxb_facet_resolve_edges(IntPtr complex, uint facet, IntPtr first, IntPtr count);
+
+        [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
+        public static extern double gxb_fixed_determinant(IntPtr o, IntPtr a, IntPtr b, IntPtr c);
 
         [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
         public static extern int gxb_incircle(IntPtr a, IntPtr b, IntPtr c, IntPtr d);

@@ -261,6 +261,10 @@ class gxb_num(Structure):
     pass
 
 
+class gxb_fixed(Structure):
+    pass
+
+
 class gxb_plane_filter(Structure):
     pass
 
@@ -460,6 +464,7 @@ gxs_change._fields_ = [
     ('element_count', c_size_t),
     ('constraints', POINTER(gxs_constraint)),
     ('constraint_count', c_size_t),
+    ('affine', POINTER(c_uint32)),
     ('epoch', c_uint64),
 ]
 
@@ -895,6 +900,10 @@ gxb_num._fields_ = [
     ('d', POINTER(c_uint64)),
 ]
 
+gxb_fixed._fields_ = [
+    ('d', c_uint64 * 3),
+]
+
 gxb_plane_filter._fields_ = [
     ('n', c_double * 3),
     ('base', c_double * 3),
@@ -1284,6 +1293,7 @@ FUNCTIONS = {
     'gxb_complex_add_point': (c_int, [POINTER(gxb_complex), POINTER(c_double), POINTER(c_uint32)]),
     'gxb_complex_barycentric': (None, [POINTER(gxb_complex), c_uint32, c_uint32, POINTER(c_double)]),
     'gxb_complex_barycentric_fine': (None, [POINTER(gxb_complex), c_uint32, c_uint32, POINTER(gxb_num)]),
+    'gxb_complex_barycentric_fixed': (None, [POINTER(gxb_complex), c_uint32, c_uint32, POINTER(gxb_fixed)]),
     'gxb_complex_begin': (None, [POINTER(gxb_complex)]),
     'gxb_complex_check_point': (c_int, [POINTER(gxb_complex), POINTER(c_double)]),
     'gxb_complex_commit': (None, [POINTER(gxb_complex)]),
@@ -1341,6 +1351,7 @@ FUNCTIONS = {
     'gxb_complex_turn': (c_int, [POINTER(gxb_complex), c_uint32, c_uint32, c_uint32, c_uint32]),
     'gxb_complex_winding': (c_int, [POINTER(gxb_complex), POINTER(c_uint32), c_size_t, POINTER(c_double), POINTER(c_uint32), c_size_t]),
     'gxb_facet_resolve_edges': (c_int, [POINTER(gxb_complex), c_uint32, POINTER(c_uint32), POINTER(c_uint32)]),
+    'gxb_fixed_determinant': (c_double, [POINTER(gxb_fixed), POINTER(gxb_fixed), POINTER(gxb_fixed), POINTER(gxb_fixed)]),
     'gxb_incircle': (c_int, [POINTER(c_double), POINTER(c_double), POINTER(c_double), POINTER(c_double)]),
     'gxb_insphere': (c_int, [POINTER(c_double), POINTER(c_double), POINTER(c_double), POINTER(c_double), POINTER(c_double)]),
     'gxb_is_allocator': (c_int, [POINTER(gx_allocator)]),
