@@ -31,7 +31,7 @@ static inline gxio_surface organ_surface(scene *s, gxshape_field *field, const g
 }
 
 static inline void organ_surfaces(scene *s, gxio_surface surfaces[MATERIALS]) {
-    const double spacing = s->small ? 0.016 : 0.009;
+    const double spacing = s->small ? 0.02 : 0.009;
     const gxshape_part flesh[3] = {
         {GXSHAPE_ELLIPSOID, {-0.035, 0.0, 0.0}, {0.085, 0.075, 0.05}, {0, 0}, 0.0},
         {GXSHAPE_ELLIPSOID, {0.05, 0.01, -0.005}, {0.08, 0.055, 0.035}, {0, 0}, 0.03},

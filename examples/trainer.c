@@ -1,13 +1,13 @@
 /* trainer: all of the library at once, as in a trainer for surgeons. An organ of three materials, made from surfaces,
    breathes: what holds its back moves. Thin parts bend, pieces touch each other, a tray and two tools. A hand goes
-   through a round of 15 s at 60 frames a second, again and again: it slices a lobe off with a blade in space, peels the
-   tumour and drops it into the tray, slices the other side; the body then goes back to before the round. In the middle
-   of a stroke the body is saved, and one that is loaded goes on for a while with the same bits.
+   through a round of 15 s at 60 frames a second (--small: 20), again and again: it slices a lobe off with a blade in
+   space, peels the tumour and drops it into the tray, slices the other side; the body then goes back to before the
+   round. In the middle of a stroke the body is saved, and one that is loaded goes on for a while with the same bits.
 
    --frames 36000: ten minutes. What dominates slow frames, memory and contact is said at the end. */
 #include "organ.h"
 
-enum { ROUND = 900, RATE = 60, TWIN_STEPS = 3, TOOLS = 3, EDGE = 4 };
+enum { SECONDS = 15 /* of a round */, TWIN_STEPS = 3, TOOLS = 3, EDGE = 4 };
 
 typedef struct exercise {
     double whole[MATERIALS]; /* m3, before any cut */
@@ -22,7 +22,7 @@ typedef struct exercise {
     double deepest;  /* m: overlap */
     double farthest; /* m: of a copy from where it was at rest */
     size_t first_memory, fragments_wrong, twins_wrong, twins;
-    uint32_t rounds;
+    uint32_t rounds, rate; /* frames a second */
 } exercise;
 
 /* A step of the hand: from when to when, in seconds of the round */
@@ -77,6 +77,7 @@ static void breathe(exercise *on, double time) {
 static void compare_twin(scene *s, exercise *on, scene_blade *blade, double x, double time) {
     gx_body_desc desc;
     gx_body *twin = NULL;
+    gx_view view;
     void *bytes;
     size_t size;
     int i;
@@ -90,9 +91,10 @@ static void compare_twin(scene *s, exercise *on, scene_blade *blade, double x, d
         double edge[3 * EDGE];
         gx_step_desc step = s->step;
         step.clock = NULL;
-        place_edge(x, share_of(time + (double)i / RATE, 1.0, 3.0), edge);
+        place_edge(x, share_of(time + (double)i / on->rate, 1.0, 3.0), edge);
         scene_must(s, gx_blade_move(gx_body_blade(twin, 0), edge, EDGE, NULL, 0, NULL, &s->failure), "twin");
         scene_must(s, gx_body_step(twin, &step, NULL, &s->failure), "twin");
+        scene_must(s, gx_body_view(twin, &view, &s->failure), "twin"); /* which numbers fragments, as the scene does */
         scene_move_blade(s, blade, edge, EDGE);
         scene_step(s);
     }
@@ -130,11 +132,10 @@ static void watch(scene *s, exercise *on, double seconds) {
 /* Moves the blade through the body where the stroke from `from` to `to` seconds is at work. */
 static void slice(scene *s, exercise *on, scene_blade *blade, double x, double time, double from, double to) {
     double edge[3 * EDGE];
-    (void)on;
-    if (time < from || time > to + 0.5 / RATE) return;
+    if (time < from || time > to + 0.5 / on->rate) return;
     place_edge(x, share_of(time, from, to), edge);
     scene_move_blade(s, blade, edge, EDGE);
-    if (time + 0.5 / RATE >= to) scene_lift_blade(s, blade);
+    if (time + 0.5 / on->rate >= to) scene_lift_blade(s, blade);
 }
 
 static void expect_fragments(scene *s, exercise *on, size_t count) {
@@ -162,27 +163,27 @@ static void end_round(scene *s, exercise *on, scene_blade *blade) {
 
 /* A frame of the hand */
 static void practise(scene *s, exercise *on, scene_blade *blade) {
-    const uint32_t at = s->frame % ROUND, turn = s->frame / ROUND % 3;
-    const double time = (double)at / RATE, right = 0.055 + 0.012 * turn, left = -0.095 - 0.005 * turn;
+    const uint32_t length = SECONDS * on->rate, at = s->frame % length, turn = s->frame / length % 3;
+    const double time = (double)at / on->rate, right = 0.055 + 0.012 * turn, left = -0.095 - 0.005 * turn;
     const double way[3] = {0.02, -0.12, 0.05}, share = share_of(time, 4.0, 7.0);
     int k;
     if (at == 0) scene_must(s, gx_body_clone(s->body, &on->before, &s->failure), "mark");
-    if (at == 2 * RATE) {
+    if (at == 2 * on->rate) {
         compare_twin(s, on, blade, right, time);
         return;
     }
     slice(s, on, blade, right, time, 1.0, 3.0);
-    if (at == 4 * RATE) {
+    if (at == 4 * on->rate) {
         expect_fragments(s, on, 2);
         grasp(s, on);
         expect_fragments(s, on, 3);
     }
-    if (at == 8 * RATE) s->step.spring_count = 0;
+    if (at == 8 * on->rate) s->step.spring_count = 0;
     for (k = 0; k < 3; k++) on->spring.target[k] = on->grip[k] + share * way[k];
     slice(s, on, blade, left, time, 9.0, 11.0);
-    if (at == 12 * RATE) expect_fragments(s, on, 4);
+    if (at == 12 * on->rate) expect_fragments(s, on, 4);
     scene_step(s);
-    if (s->frame % ROUND == 0) end_round(s, on, blade);
+    if (s->frame % length == 0) end_round(s, on, blade);
 }
 
 static int compare_doubles(const void *a, const void *b) {
@@ -203,9 +204,9 @@ int main(int argc, char **argv) {
     const scene_desc desc = {.name = "trainer",
                              .about =
                                  "An organ is sliced, peeled, dropped and made whole again, in contact with tools.",
-                             .frames = ROUND,
-                             .small_frames = ROUND,
-                             .least_frames = ROUND};
+                             .frames = 60 * SECONDS,
+                             .small_frames = 20 * SECONDS,
+                             .least_frames = 20 * SECONDS};
     gxio_surface surfaces[MATERIALS];
     gx_contact_desc contact;
     scene_blade blade;
@@ -216,9 +217,9 @@ int main(int argc, char **argv) {
     memset(&contact, 0, sizeof contact);
     scene_open(&s, &desc, argc, argv);
     organ_surfaces(&s, surfaces);
-    s.step.dt = 1.0 / RATE;
+    on.rate = s.small ? 20 : 60;
+    s.step.dt = 1.0 / on.rate;
     s.step.mass_damping = 1.0;
-    s.body_desc.affine_below = 0.6;
     organ_make(&s, surfaces, s.small ? 8 : 16);
     scene_hold(&s, 1, 1, 0.05);
     scene_look(&s);
@@ -233,7 +234,7 @@ int main(int argc, char **argv) {
     s.step.collider_count = TOOLS;
     s.step.region_poses = on.poses;
     while (s.frame < s.frames) {
-        const double time = (double)s.frame / RATE, before = s.sum_frames;
+        const double time = (double)s.frame / on.rate, before = s.sum_frames;
         const uint32_t frame = s.frame;
         move_tools(&on, time);
         breathe(&on, time);
