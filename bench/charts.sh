@@ -1,6 +1,7 @@
 #!/bin/sh
 # Draws what benches have measured.
 # usage: sh bench/charts.sh TABLES CHARTS
+#        sh bench/charts.sh TABLES CHARTS blade     draws blade.svg alone
 #     TABLES  directory of the benches' CSV files
 #     CHARTS  directory of the SVG files
 # quadrature.csv gives quadrature.svg and quadrature_triangles.svg, stepping.csv stepping.svg and stepping_cuts.svg, the others one of their
@@ -12,7 +13,7 @@ mkdir -p "$charts" || exit 2
 # where BENCH: when its table was made, and on what
 where() { echo "$(date -r "$tables/$1.csv" +%Y-%m-%d), $(uname -m | tr _ -), one thread"; }
 
-for bench in quadrature conditioning stepping front space scaling blade open; do
+for bench in ${3:-quadrature conditioning stepping front space scaling blade open}; do
     [ -s "$tables/$bench.csv" ] || { echo "$0: $tables/$bench.csv is missing: make bench-$bench" >&2; exit 2; }
 done
 
@@ -364,5 +365,10 @@ unset multiplot
 END
 }
 
+if [ "${3:-}" = blade ]; then
+    blade | gnuplot || exit 1
+    echo "wrote $charts/blade.svg"
+    exit 0
+fi
 panels | gnuplot && triangles | gnuplot && conditioning | gnuplot && stepping | gnuplot && stepping_cuts | gnuplot && front | gnuplot && space | gnuplot && scaling | gnuplot && blade | gnuplot && open | gnuplot || exit 1
 echo "wrote $charts/quadrature.svg, quadrature_triangles.svg, conditioning.svg, stepping.svg, stepping_cuts.svg, front.svg, space.svg, scaling.svg, blade.svg, open.svg"
