@@ -28,7 +28,8 @@
  *
  * Contents. Search for >>name. Only the first function of a family is listed with its prefix.
  *     >>shared      result codes, allocator, job hook
- *     >>numbers     exact numbers, integers times powers of two: gxb_num_set, add, sub, mul, to_double, ratio
+ *     >>numbers     exact numbers, integers times powers of two: gxb_num_set, add, sub, mul, to_double, ratio;
+ *                   gxb_fixed_determinant
  *     >>predicates  of coordinates: gxb_orient2d, orient3d, incircle, insphere, winding_number
  *                   a plane: gxb_plane_init
  *                   points given, on a line and a plane, on three planes: gxb_point_explicit, line_plane, three_planes
@@ -40,7 +41,7 @@
  *                   giving back what nothing needs: is_sparse, survey, compact, forget
  *                   reading: gxb_complex_point and others
  *                   questions: gxb_complex_side, turn, compare, leaf_at, winding, barycentric, support,
- *                   barycentric_fine
+ *                   barycentric_fine, barycentric_fixed
  *                   points of moved elements: gxb_pullback_misses, set, contains, orient, weights,
  *                   gxb_complex_pullback_side
  *     >>stream      a complex as bytes: gxb_stream_pass, has; gxb_complex_save, load
@@ -54,9 +55,9 @@
  * Of complexes:
  *     storage         >>memory (arrays), >>store (points, planes, exact numbers), >>transaction
  *     structure       >>topology (of the mesh), >>access (reading), >>places (which leaf is there), >>split (by a
- *                     plane)
+ *                     plane), >>pairs (of doubles)
  *     a triangle      >>clip, >>walls, >>cover (what is there already), >>rebalance and >>crowds (trees), >>insert
- *     questions       >>inside (winding numbers), >>pairs (of doubles), >>barycentric, >>pullback (of points of space)
+ *     questions       >>inside (winding numbers), >>barycentric, >>pullback (of points of space)
  *     less            >>census (what is needed), >>unite (what becomes one), >>compact (the rest goes)
  *     bytes           >>save, >>check (what was read), >>load
  *
@@ -218,12 +219,14 @@ extern "C" {
 #if !defined(GXB_LIMB32) &&                                                                                            \
     (defined(__SIZEOF_INT128__) || (defined(GXFEM_INTRINSICS) && (defined(_M_X64) || defined(_M_ARM64))))
 typedef uint64_t gxb_limb;
-#define GXB_LIMB_BITS 64
-#define GXB_NUM_LIMBS 168
+#define GXB_LIMB_BITS   64
+#define GXB_NUM_LIMBS   168
+#define GXB_FIXED_LIMBS 3
 #else
 typedef uint32_t gxb_limb;
-#define GXB_LIMB_BITS 32
-#define GXB_NUM_LIMBS 336
+#define GXB_LIMB_BITS   32
+#define GXB_NUM_LIMBS   336
+#define GXB_FIXED_LIMBS 6
 #endif
 
 /* sign * (d[0] + d[1] B + ... + d[n-1] B^(n-1)) * B^exp with B = 2^GXB_LIMB_BITS. Zero: sign 0, n 0. Neither end limb
@@ -253,6 +256,15 @@ GXFEM_API void gxb_num_mul(gxb_num *r, const gxb_num *a, const gxb_num *b);
 GXFEM_API double gxb_num_to_double(const gxb_num *a);
 /* a / b, relative error below 2^-50 within 2^-1000 ... 2^1000 */
 GXFEM_API double gxb_num_ratio(const gxb_num *a, const gxb_num *b);
+
+/* A number from 0 to 1 as an integer times 2^-184, lowest limb first: a barycentric coordinate */
+#define GXB_FIXED_BITS 184
+typedef struct gxb_fixed {
+    gxb_limb d[GXB_FIXED_LIMBS];
+} gxb_fixed;
+/* det(a - o, b - o, c - o) of vectors of three such numbers; exact but for the rounding of the result, 2^-51 of it */
+GXFEM_API double gxb_fixed_determinant(const gxb_fixed o[3], const gxb_fixed a[3], const gxb_fixed b[3],
+                                       const gxb_fixed c[3]);
 
 /* >>predicates ----------------------------------------------------------------------------------------------------- */
 
@@ -647,6 +659,9 @@ GXFEM_API void gxb_complex_barycentric(gxb_complex *complex, uint32_t point, uin
 GXFEM_API unsigned gxb_complex_support(const gxb_complex *complex, uint32_t point, uint32_t element);
 /* The coordinates with a relative error below 2^-180. */
 GXFEM_API void gxb_complex_barycentric_fine(gxb_complex *complex, uint32_t point, uint32_t element, gxb_num lambda[4]);
+/* The coordinates with an error below 2^-179 */
+GXFEM_API void gxb_complex_barycentric_fixed(gxb_complex *complex, uint32_t point, uint32_t element,
+                                             gxb_fixed lambda[4]);
 
 /* A point p of space against an element whose corners have moved to x0 ... x3. The affine map that moves the corners
    takes a material point to p: the sum of D_i / D times corner i at rest. D = |x1-x0 x2-x0 x3-x0|, and D_i is the same
@@ -842,6 +857,13 @@ GXFEM_API gx_result gxb_boolean_set_retained(gxb_boolean *boolean, int retained,
 /* Copies an operand. Errors: ARGUMENT, EMPTY, INDEX (triangle), NOT_FINITE and RANGE (vertex), NOT_CLOSED (triangle),
  * LIMIT, MEMORY. */
 GXFEM_API gx_result gxb_boolean_add(gxb_boolean *boolean, const gxb_operand *operand, gx_failure *failure);
+/* Takes an operand out, by its index in the order in which operands were added. The result is that of the other ones:
+ * the same solid as that of a Boolean without it. Indices stay. An operand that moves is taken out and added anew, as
+ * the last one. What it has divided stays divided, and vertices there may name it, unless the result is coarse; its
+ * triangles go on to take memory, and time where new operands meet them. An evaluation then looks only at what the box
+ * of the operand meets, or at all if it was the first one or an intersection. Errors: ARGUMENT, INDEX (no such operand,
+ * or it is out already), MEMORY, LIMIT. */
+GXFEM_API gx_result gxb_boolean_remove(gxb_boolean *boolean, uint32_t operand, gx_failure *failure);
 /* The result of all operands so far. Errors: ARGUMENT, SEQUENCE (no operand), MEMORY, LIMIT, OVERLAP (a surface vouched
  * for as simple is not). After an error the Boolean keeps its operands and can be evaluated again. */
 GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *boolean, gxb_boolean_result *result, gx_failure *failure);
@@ -1179,6 +1201,93 @@ GXFEM_API double gxb_num_ratio(const gxb_num *a, const gxb_num *b) {
     if (power_a < -1000) return 0;
     if (power_a > 1000) power_a = 1000;
     return (a->sign * b->sign < 0 ? -q : q) * gxbp_power(power_a);
+}
+
+/* r = |r| for a number of n limbs in two's complement. Returns 1 if it was negative. */
+static int gxbp_fixed_absolute(gxb_limb *r, uint32_t n) {
+    const int negative = (int)(r[n - 1] >> (GXB_LIMB_BITS - 1));
+    gxb_limb carry = 1;
+    uint32_t i;
+    for (i = 0; negative && i < n; i++) {
+        r[i] = (gxb_limb)(~r[i] + carry);
+        carry = (gxb_limb)(carry & (r[i] == 0));
+    }
+    return negative;
+}
+
+/* r = |a - b|. Returns 1 if a < b. */
+static int gxbp_fixed_difference(gxb_limb *r, const gxb_fixed *a, const gxb_fixed *b) {
+    gxb_limb borrow = 0;
+    uint32_t i;
+    for (i = 0; i < GXB_FIXED_LIMBS; i++) {
+        const gxb_limb x = a->d[i], t = (gxb_limb)(x - b->d[i]);
+        r[i] = (gxb_limb)(t - borrow);
+        borrow = (gxb_limb)((x < b->d[i]) | (t < borrow));
+    }
+    return gxbp_fixed_absolute(r, GXB_FIXED_LIMBS);
+}
+
+/* r += p q, or r -= p q, in two's complement; limbs: n of p, GXB_FIXED_LIMBS of q, as many as of both of r */
+static void gxbp_fixed_add_product(gxb_limb *r, const gxb_limb *p, uint32_t n, const gxb_limb *q, int negative) {
+    gxb_limb product[3 * GXB_FIXED_LIMBS], carry = 0;
+    uint32_t i, j;
+    for (i = 0; i < n; i++) product[i] = 0;
+    for (j = 0; j < GXB_FIXED_LIMBS; j++) {
+        carry = 0;
+        for (i = 0; i < n; i++) product[i + j] = gxbp_multiply(p[i], q[j], product[i + j], carry, &carry);
+        product[n + j] = carry;
+    }
+    carry = 0;
+    for (i = 0; i < n + GXB_FIXED_LIMBS; i++) {
+        const gxb_limb x = r[i], y = (gxb_limb)(product[i] + carry);
+        const gxb_limb over = (gxb_limb)(y < carry);
+        r[i] = (gxb_limb)(negative ? x - y : x + y);
+        carry = (gxb_limb)(over | (negative ? x < y : r[i] < x));
+    }
+}
+
+/* Differences are below 2^185, minors below 2^371 and the determinant below 2^558, which fit in 192, 384, 576 bits. */
+GXFEM_API double gxb_fixed_determinant(const gxb_fixed o[3], const gxb_fixed a[3], const gxb_fixed b[3],
+                                       const gxb_fixed c[3]) {
+    gxb_limb d[3][3][GXB_FIXED_LIMBS], minor[2 * GXB_FIXED_LIMBS], total[3 * GXB_FIXED_LIMBS];
+    int negative[3][3];
+    uint32_t k;
+    gxb_num r;
+    for (k = 0; k < 3; k++) {
+        negative[0][k] = gxbp_fixed_difference(d[0][k], &a[k], &o[k]);
+        negative[1][k] = gxbp_fixed_difference(d[1][k], &b[k], &o[k]);
+        negative[2][k] = gxbp_fixed_difference(d[2][k], &c[k], &o[k]);
+    }
+    memset(total, 0, sizeof total);
+    for (k = 0; k < 3; k++) {
+        const uint32_t i = (k + 1) % 3, j = (k + 2) % 3;
+        int sign;
+        memset(minor, 0, sizeof minor);
+        gxbp_fixed_add_product(minor, d[1][i], GXB_FIXED_LIMBS, d[2][j], negative[1][i] ^ negative[2][j]);
+        gxbp_fixed_add_product(minor, d[1][j], GXB_FIXED_LIMBS, d[2][i], 1 ^ negative[1][j] ^ negative[2][i]);
+        sign = gxbp_fixed_absolute(minor, 2 * GXB_FIXED_LIMBS);
+        gxbp_fixed_add_product(total, minor, 2 * GXB_FIXED_LIMBS, d[0][k], sign ^ negative[0][k]);
+    }
+    r.sign = gxbp_fixed_absolute(total, 3 * GXB_FIXED_LIMBS) ? -1 : 1;
+    r.exp = 0;
+    r.n = 3 * GXB_FIXED_LIMBS;
+    r.d = total;
+    gxbp_num_trim(&r);
+    return gxb_num_to_double(&r) * gxbp_power(-3 * GXB_FIXED_BITS);
+}
+
+/* The number, which is from 0 to 1, cut off below 2^-184 */
+static GXBP_COLD void gxbp_fixed_set(gxb_fixed *r, const gxb_num *a) {
+    uint32_t i;
+    memset(r, 0, sizeof *r);
+    for (i = 0; i < a->n; i++) {
+        /* the limb's lowest bit, counted from one limb below r's */
+        const int bit = (a->exp + (int)i + 1) * GXB_LIMB_BITS + GXB_FIXED_BITS, word = bit / GXB_LIMB_BITS,
+                  off = bit % GXB_LIMB_BITS;
+        if (bit <= 0) continue;
+        if (word > 0) r->d[word - 1] |= (gxb_limb)(a->d[i] << off);
+        if (off > 0 && word < GXB_FIXED_LIMBS) r->d[word] |= (gxb_limb)(a->d[i] >> (GXB_LIMB_BITS - off));
+    }
 }
 
 /* r += factor * a, for a factor of 1 or -1 */
@@ -2772,8 +2881,9 @@ static int gxbp_exact_sign(gxb_store *store, uint32_t kind, const uint32_t def[3
     return r.sign;
 }
 
-static int gxbp_side_of(gxb_store *store, const gxb_ball *ball, uint32_t kind, const uint32_t def[3], uint32_t point,
-                        uint32_t plane) {
+/* GXBP_UNKNOWN: neither definitions nor doubles tell. */
+static inline int gxbp_filtered_side(gxb_store *store, const gxb_ball *ball, uint32_t kind, const uint32_t def[3],
+                                     uint32_t point, uint32_t plane) {
     double bound, value;
     int sign;
     if (gxbp_incident(store, kind, def, point, plane)) return 0;
@@ -2783,8 +2893,13 @@ static int gxbp_side_of(gxb_store *store, const gxb_ball *ball, uint32_t kind, c
         sign = gxbp_filter_sign(value, bound);
         if (sign != 0) return sign;
     }
-    if (kind == GXB_THREE_PLANES && gxbp_incident_by_line(store, def, plane)) return 0;
-    return gxbp_exact_sign(store, kind, def, point, plane);
+    return kind == GXB_THREE_PLANES && gxbp_incident_by_line(store, def, plane) ? 0 : GXBP_UNKNOWN;
+}
+
+static int gxbp_side_of(gxb_store *store, const gxb_ball *ball, uint32_t kind, const uint32_t def[3], uint32_t point,
+                        uint32_t plane) {
+    const int sign = gxbp_filtered_side(store, ball, kind, def, point, plane);
+    return sign == GXBP_UNKNOWN ? gxbp_exact_sign(store, kind, def, point, plane) : sign;
 }
 
 static int gxbp_store_side(gxb_store *store, uint32_t point, uint32_t plane) {
@@ -4022,6 +4137,165 @@ GXFEM_API gx_result gxb_complex_open_element(gxb_complex *cx, uint32_t element) 
     return GX_OK;
 }
 
+/* >>pairs: numbers as sums of two doubles: about 100 bits, with bounds --------------------------------------------- */
+/* In: doubles. Out: sums and products as pairs of doubles, with bounds that hold as those of >>filter do.
+ *
+ * The sum of two doubles is their rounded sum and its error, which the six operations of gxbp_pair_sum find but for
+ * 2^-103 of the terms' sizes also where roundings are not to nearest [Boldo, Graillat, Muller, On the robustness of the
+ * 2Sum and Fast2Sum algorithms (2017)]; a product is that of halves of 26 and 27 bits, taken apart by their bits. What
+ * is left out or rounded in a sum or product of pairs is below 2^-100 of its terms' sizes; GXBP_PAIR_U has room for the
+ * rounding of the bounds too. Coordinates are below 2^16, so numbers of degree 9 below 2^180, their errors below 2^600
+ * even where nothing is known; GXBP_TINY stands for underflow.
+ */
+#define GXBP_PAIR_U     gxbp_power(-97)
+#define GXBP_PAIR_RANGE 16
+
+static gxbp_pair gxbp_pair_sum(double a, double b) {
+    gxbp_pair r;
+    double part;
+    r.high = gxbp_fence(a + b);
+    part = gxbp_fence(r.high - a);
+    r.low = gxbp_fence(gxbp_fence(a - gxbp_fence(r.high - part)) + gxbp_fence(b - part));
+    r.error = 0;
+    return r;
+}
+
+/* a + b, or a - b where sign is -1 */
+static gxbp_pair gxbp_pair_add(const gxbp_pair *a, const gxbp_pair *b, double sign) {
+    gxbp_pair r = gxbp_pair_sum(a->high, sign * b->high);
+    const double size = gxbp_abs(a->high) + gxbp_abs(b->high);
+    r = gxbp_pair_sum(r.high, gxbp_fence(r.low + (a->low + sign * b->low)));
+    r.error = a->error + b->error + GXBP_PAIR_U * size + GXBP_TINY;
+    return r;
+}
+
+static gxbp_pair gxbp_pair_mul(const gxbp_pair *a, const gxbp_pair *b) {
+    const double ah = gxbp_double(gxbp_bits(a->high) >> 27 << 27), al = gxbp_fence(a->high - ah);
+    const double bh = gxbp_double(gxbp_bits(b->high) >> 27 << 27), bl = gxbp_fence(b->high - bh);
+    const double p = gxbp_fence(a->high * b->high), size_a = gxbp_abs(a->high) + a->error;
+    double rest = gxbp_fence(gxbp_fence(ah * bh) - p);
+    gxbp_pair r;
+    rest = gxbp_fence(rest + gxbp_fence(ah * bl));
+    rest = gxbp_fence(rest + gxbp_fence(al * bh));
+    r = gxbp_pair_sum(p, gxbp_fence(rest + (al * bl + (a->high * b->low + a->low * b->high))));
+    r.error = size_a * b->error + gxbp_abs(b->high) * a->error + GXBP_PAIR_U * gxbp_abs(p) + GXBP_TINY;
+    return r;
+}
+
+/* a b - c d */
+static GXBP_APART gxbp_pair gxbp_pair_det2(const gxbp_pair *a, const gxbp_pair *b, const gxbp_pair *c,
+                                           const gxbp_pair *d) {
+    const gxbp_pair s = gxbp_pair_mul(a, b), t = gxbp_pair_mul(c, d);
+    return gxbp_pair_add(&s, &t, -1);
+}
+
+static gxbp_pair gxbp_pair_dot(const gxbp_pair a[3], const gxbp_pair b[3]) {
+    gxbp_pair r = gxbp_pair_mul(&a[0], &b[0]), t = gxbp_pair_mul(&a[1], &b[1]);
+    r = gxbp_pair_add(&r, &t, 1);
+    t = gxbp_pair_mul(&a[2], &b[2]);
+    return gxbp_pair_add(&r, &t, 1);
+}
+
+/* a / b, if both are known to 2^-54 of their own values: with the roundings of the high parts and of the quotient the
+   relative error is below 2^-50. */
+static int gxbp_pair_ratio(const gxbp_pair *a, const gxbp_pair *b, double *ratio) {
+    const double most = gxbp_power(-54);
+    if (!(a->error < most * gxbp_abs(a->high)) || !(b->error < most * gxbp_abs(b->high))) return 0;
+    *ratio = a->high / b->high;
+    return 1;
+}
+
+/* q - p. Where a coordinate is no double, or large: 0, with an error that makes every ratio fail */
+static void gxbp_pair_difference(gxbp_pair r[3], const gxb_ball *p, const gxb_ball *q) {
+    const int good =
+        p->error == 0 && q->error == 0 && gxbp_max(gxbp_max3(p->x), gxbp_max3(q->x)) < gxbp_power(GXBP_PAIR_RANGE);
+    int k;
+    for (k = 0; k < 3; k++) {
+        r[k] = gxbp_pair_sum(good ? q->x[k] : 0, good ? -p->x[k] : 0);
+        r[k].error = good ? GXBP_PAIR_U * (gxbp_abs(p->x[k]) + gxbp_abs(q->x[k])) : gxbp_power(4 * GXBP_PAIR_RANGE);
+    }
+}
+
+static const gxbp_pair *gxbp_pair_normal(gxb_complex *cx, uint32_t plane) {
+    const gxb_cplane *f = &cx->store.planes[plane];
+    const uint32_t slot = plane % GXBP_PAIR_NORMALS;
+    gxbp_pair *n = cx->pairs->normal[slot], a[3], b[3];
+    int i;
+    if (cx->pairs->plane[slot] == plane) return n;
+    cx->pairs->plane[slot] = plane;
+    gxbp_pair_difference(a, &cx->store.points[f->def[0]].ball, &cx->store.points[f->def[1]].ball);
+    if (f->along_axis) { /* a x e */
+        const uint32_t j = (f->def[2] + 1) % 3, k = (f->def[2] + 2) % 3;
+        n[j] = a[k];
+        n[k].high = -a[j].high;
+        n[k].low = -a[j].low;
+        n[k].error = a[j].error;
+        n[f->def[2]] = gxbp_pair_sum(0, 0);
+        return n;
+    }
+    gxbp_pair_difference(b, &cx->store.points[f->def[0]].ball, &cx->store.points[f->def[2]].ball);
+    for (i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        n[i] = gxbp_pair_det2(&a[j], &b[k], &a[k], &b[j]);
+    }
+    return n;
+}
+
+/* n.(x - base) for an explicit point */
+static gxbp_pair gxbp_pair_side(gxb_complex *cx, uint32_t point, uint32_t plane) {
+    const uint32_t slot = (plane * 31 + point) % GXBP_PAIR_SIDES;
+    gxbp_pairs *pairs = cx->pairs;
+    if (pairs->side_plane[slot] != plane || pairs->side_point[slot] != point) {
+        const gxbp_pair *n = gxbp_pair_normal(cx, plane);
+        const gxb_cplane *f = &cx->store.planes[plane];
+        gxbp_pair d[3];
+        gxbp_pair_difference(d, &cx->store.points[f->def[0]].ball, &cx->store.points[point].ball);
+        if (f->along_axis) { /* its normal has no component along the axis */
+            const uint32_t j = (f->def[2] + 1) % 3, k = (f->def[2] + 2) % 3;
+            const gxbp_pair s = gxbp_pair_mul(&n[j], &d[j]), t = gxbp_pair_mul(&n[k], &d[k]);
+            pairs->side[slot] = gxbp_pair_add(&s, &t, 1);
+        } else
+            pairs->side[slot] = gxbp_pair_dot(n, d);
+        pairs->side_plane[slot] = plane;
+        pairs->side_point[slot] = point;
+    }
+    return pairs->side[slot];
+}
+
+/* A side of a plane as pairs tell it, GXBP_UNKNOWN where they do not, of a point of two given points p, q and a plane,
+   with sides s and t of the latter and of the plane in question. The point is (t p - s q) / (t - s) for its own plane.
+ */
+static int gxbp_pair_line_side(gxb_complex *cx, const uint32_t def[3], uint32_t plane) {
+    const gxbp_pair p = gxbp_pair_side(cx, def[0], def[2]), q = gxbp_pair_side(cx, def[1], def[2]);
+    const gxbp_pair s = gxbp_pair_side(cx, def[0], plane), t = gxbp_pair_side(cx, def[1], plane);
+    const gxbp_pair value = gxbp_pair_det2(&q, &s, &p, &t), weight = gxbp_pair_add(&q, &p, -1);
+    const int sign = gxbp_filter_sign(value.high, value.error) * gxbp_filter_sign(weight.high, weight.error);
+    return sign == 0 ? GXBP_UNKNOWN : sign;
+}
+
+/* The same of a point x of three planes. With a point o of the plane in question, n_i.(x - o) is minus o's side s_i of
+   each of the three, so n.(x - o) = -(sum of s_i n.(n_j x n_k)) / n_0.(n_1 x n_2). */
+static int gxbp_pair_planes_side(gxb_complex *cx, const uint32_t def[3], uint32_t plane) {
+    const uint32_t o = cx->store.planes[plane].def[0];
+    gxbp_pair n[4][3], cross[3], dot, value = gxbp_pair_sum(0, 0), weight = value;
+    uint32_t i, k;
+    int sign;
+    for (i = 0; i < 4; i++) memcpy(n[i], gxbp_pair_normal(cx, i < 3 ? def[i] : plane), sizeof n[i]);
+    for (i = 0; i < 3; i++) {
+        const gxbp_pair *a = n[(i + 1) % 3], *b = n[(i + 2) % 3], side = gxbp_pair_side(cx, o, def[i]);
+        for (k = 0; k < 3; k++) {
+            const uint32_t x = (k + 1) % 3, y = (k + 2) % 3;
+            cross[k] = gxbp_pair_det2(&a[x], &b[y], &a[y], &b[x]);
+        }
+        if (i == 0) weight = gxbp_pair_dot(n[0], cross);
+        dot = gxbp_pair_dot(n[3], cross);
+        dot = gxbp_pair_mul(&side, &dot);
+        value = gxbp_pair_add(&value, &dot, 1);
+    }
+    sign = -gxbp_filter_sign(value.high, value.error) * gxbp_filter_sign(weight.high, weight.error);
+    return sign == 0 ? GXBP_UNKNOWN : sign;
+}
+
 /* >>clip: a triangle against the tree of an element ---------------------------------------------------------------- */
 /* In: a triangle and an element. Out: the polygon of the triangle that reaches each leaf. Touches the stack of
    polygons only. */
@@ -4030,8 +4304,13 @@ static uint32_t gxbp_face_plane(const gxb_complex *cx, uint32_t element, uint32_
     return cx->facets[cx->face_facet[cx->element_faces[4 * element + k]]].plane;
 }
 
+/* Exact coordinates of a corner are not kept, so pairs are asked first. */
 static int gxbp_corner_sign(gxb_complex *cx, const gxbp_corner *c, uint32_t plane) {
-    return gxbp_side_of(&cx->store, &c->ball, c->kind, c->def, c->point, plane);
+    int sign = gxbp_filtered_side(&cx->store, &c->ball, c->kind, c->def, c->point, plane);
+    if (sign == GXBP_UNKNOWN && c->point == GXB_NONE)
+        sign = c->kind == GXB_LINE_PLANE ? gxbp_pair_line_side(cx, c->def, plane)
+                                         : gxbp_pair_planes_side(cx, c->def, plane);
+    return sign == GXBP_UNKNOWN ? gxbp_exact_sign(&cx->store, c->kind, c->def, c->point, plane) : sign;
 }
 
 /* The point in which two carriers meet in the triangle's plane. */
@@ -5047,130 +5326,6 @@ GXFEM_API int gxb_complex_winding(gxb_complex *cx, const uint32_t *points, size_
     return winding;
 }
 
-/* >>pairs: numbers as sums of two doubles: about 100 bits, with bounds --------------------------------------------- */
-/* In: doubles. Out: sums and products as pairs of doubles, with bounds that hold as those of >>filter do.
- *
- * The sum of two doubles is their rounded sum and its error, which the six operations of gxbp_pair_sum find but for
- * 2^-103 of the terms' sizes also where roundings are not to nearest [Boldo, Graillat, Muller, On the robustness of the
- * 2Sum and Fast2Sum algorithms (2017)]; a product is that of halves of 26 and 27 bits, taken apart by their bits. What
- * is left out or rounded in a sum or product of pairs is below 2^-100 of its terms' sizes; GXBP_PAIR_U has room for the
- * rounding of the bounds too. Coordinates are below 2^16, so numbers of degree 9 below 2^180, their errors below 2^600
- * even where nothing is known; GXBP_TINY stands for underflow.
- */
-#define GXBP_PAIR_U     gxbp_power(-97)
-#define GXBP_PAIR_RANGE 16
-
-static gxbp_pair gxbp_pair_sum(double a, double b) {
-    gxbp_pair r;
-    double part;
-    r.high = gxbp_fence(a + b);
-    part = gxbp_fence(r.high - a);
-    r.low = gxbp_fence(gxbp_fence(a - gxbp_fence(r.high - part)) + gxbp_fence(b - part));
-    r.error = 0;
-    return r;
-}
-
-/* a + b, or a - b where sign is -1 */
-static gxbp_pair gxbp_pair_add(const gxbp_pair *a, const gxbp_pair *b, double sign) {
-    gxbp_pair r = gxbp_pair_sum(a->high, sign * b->high);
-    const double size = gxbp_abs(a->high) + gxbp_abs(b->high);
-    r = gxbp_pair_sum(r.high, gxbp_fence(r.low + (a->low + sign * b->low)));
-    r.error = a->error + b->error + GXBP_PAIR_U * size + GXBP_TINY;
-    return r;
-}
-
-static gxbp_pair gxbp_pair_mul(const gxbp_pair *a, const gxbp_pair *b) {
-    const double ah = gxbp_double(gxbp_bits(a->high) >> 27 << 27), al = gxbp_fence(a->high - ah);
-    const double bh = gxbp_double(gxbp_bits(b->high) >> 27 << 27), bl = gxbp_fence(b->high - bh);
-    const double p = gxbp_fence(a->high * b->high), size_a = gxbp_abs(a->high) + a->error;
-    double rest = gxbp_fence(gxbp_fence(ah * bh) - p);
-    gxbp_pair r;
-    rest = gxbp_fence(rest + gxbp_fence(ah * bl));
-    rest = gxbp_fence(rest + gxbp_fence(al * bh));
-    r = gxbp_pair_sum(p, gxbp_fence(rest + (al * bl + (a->high * b->low + a->low * b->high))));
-    r.error = size_a * b->error + gxbp_abs(b->high) * a->error + GXBP_PAIR_U * gxbp_abs(p) + GXBP_TINY;
-    return r;
-}
-
-/* a b - c d */
-static GXBP_APART gxbp_pair gxbp_pair_det2(const gxbp_pair *a, const gxbp_pair *b, const gxbp_pair *c,
-                                           const gxbp_pair *d) {
-    const gxbp_pair s = gxbp_pair_mul(a, b), t = gxbp_pair_mul(c, d);
-    return gxbp_pair_add(&s, &t, -1);
-}
-
-static gxbp_pair gxbp_pair_dot(const gxbp_pair a[3], const gxbp_pair b[3]) {
-    gxbp_pair r = gxbp_pair_mul(&a[0], &b[0]), t = gxbp_pair_mul(&a[1], &b[1]);
-    r = gxbp_pair_add(&r, &t, 1);
-    t = gxbp_pair_mul(&a[2], &b[2]);
-    return gxbp_pair_add(&r, &t, 1);
-}
-
-/* a / b, if both are known to 2^-54 of their own values: with the roundings of the high parts and of the quotient the
-   relative error is below 2^-50. */
-static int gxbp_pair_ratio(const gxbp_pair *a, const gxbp_pair *b, double *ratio) {
-    const double most = gxbp_power(-54);
-    if (!(a->error < most * gxbp_abs(a->high)) || !(b->error < most * gxbp_abs(b->high))) return 0;
-    *ratio = a->high / b->high;
-    return 1;
-}
-
-/* q - p. Where a coordinate is no double, or large: 0, with an error that makes every ratio fail */
-static void gxbp_pair_difference(gxbp_pair r[3], const gxb_ball *p, const gxb_ball *q) {
-    const int good =
-        p->error == 0 && q->error == 0 && gxbp_max(gxbp_max3(p->x), gxbp_max3(q->x)) < gxbp_power(GXBP_PAIR_RANGE);
-    int k;
-    for (k = 0; k < 3; k++) {
-        r[k] = gxbp_pair_sum(good ? q->x[k] : 0, good ? -p->x[k] : 0);
-        r[k].error = good ? GXBP_PAIR_U * (gxbp_abs(p->x[k]) + gxbp_abs(q->x[k])) : gxbp_power(4 * GXBP_PAIR_RANGE);
-    }
-}
-
-static const gxbp_pair *gxbp_pair_normal(gxb_complex *cx, uint32_t plane) {
-    const gxb_cplane *f = &cx->store.planes[plane];
-    const uint32_t slot = plane % GXBP_PAIR_NORMALS;
-    gxbp_pair *n = cx->pairs->normal[slot], a[3], b[3];
-    int i;
-    if (cx->pairs->plane[slot] == plane) return n;
-    cx->pairs->plane[slot] = plane;
-    gxbp_pair_difference(a, &cx->store.points[f->def[0]].ball, &cx->store.points[f->def[1]].ball);
-    if (f->along_axis) { /* a x e */
-        const uint32_t j = (f->def[2] + 1) % 3, k = (f->def[2] + 2) % 3;
-        n[j] = a[k];
-        n[k].high = -a[j].high;
-        n[k].low = -a[j].low;
-        n[k].error = a[j].error;
-        return n;
-    }
-    gxbp_pair_difference(b, &cx->store.points[f->def[0]].ball, &cx->store.points[f->def[2]].ball);
-    for (i = 0; i < 3; i++) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        n[i] = gxbp_pair_det2(&a[j], &b[k], &a[k], &b[j]);
-    }
-    return n;
-}
-
-/* n.(x - base) for an explicit point */
-static gxbp_pair gxbp_pair_side(gxb_complex *cx, uint32_t point, uint32_t plane) {
-    const uint32_t slot = (plane * 31 + point) % GXBP_PAIR_SIDES;
-    gxbp_pairs *pairs = cx->pairs;
-    if (pairs->side_plane[slot] != plane || pairs->side_point[slot] != point) {
-        const gxbp_pair *n = gxbp_pair_normal(cx, plane);
-        const gxb_cplane *f = &cx->store.planes[plane];
-        gxbp_pair d[3];
-        gxbp_pair_difference(d, &cx->store.points[f->def[0]].ball, &cx->store.points[point].ball);
-        if (f->along_axis) { /* its normal has no component along the axis */
-            const uint32_t j = (f->def[2] + 1) % 3, k = (f->def[2] + 2) % 3;
-            const gxbp_pair s = gxbp_pair_mul(&n[j], &d[j]), t = gxbp_pair_mul(&n[k], &d[k]);
-            pairs->side[slot] = gxbp_pair_add(&s, &t, 1);
-        } else
-            pairs->side[slot] = gxbp_pair_dot(n, d);
-        pairs->side_plane[slot] = plane;
-        pairs->side_point[slot] = point;
-    }
-    return pairs->side[slot];
-}
-
 /* >>barycentric: barycentric coordinates of points in their elements ----------------------------------------------- */
 /* In: a point of the complex and an element. Out: its barycentric coordinates, rounded once, or as pairs, or
    exactly. Changes nothing but the cache of exact numbers. */
@@ -5388,22 +5543,34 @@ GXFEM_API void gxb_complex_barycentric(gxb_complex *cx, uint32_t point, uint32_t
         if (lambda[k] < 0) lambda[k] = gxbp_exact_lambda(cx, point, element, k);
 }
 
+/* The four normals are cross products of two edges of their faces, so all nodes have the same distance from the
+   opposite face, six times the element's volume: one denominator serves all. */
 GXFEM_API GXBP_RARE void gxb_complex_barycentric_fine(gxb_complex *cx, uint32_t point, uint32_t element,
                                                       gxb_num lambda[4]) {
+    GXB_NUM(num);
+    GXB_NUM(den);
+    GXB_NUM(weight);
+    GXB_NUM(height);
     uint32_t k;
+    gxbp_distance(cx, cx->elements[4 * element], gxbp_face_plane(cx, element, 0), &height, NULL);
     for (k = 0; k < 4; k++) {
         const int known = gxbp_known_lambda(cx, point, element, k);
-        GXB_NUM(num);
-        GXB_NUM(den);
-        GXB_NUM(weight);
-        GXB_NUM(height);
         gxb_num_set(&lambda[k], known > 0 ? 1.0 : 0.0, 0);
         if (known >= 0) continue;
         gxbp_distance(cx, point, gxbp_face_plane(cx, element, k), &num, &weight);
-        gxbp_distance(cx, cx->elements[4 * element + k], gxbp_face_plane(cx, element, k), &height, NULL);
-        gxb_num_mul(&den, &weight, &height);
+        if (den.n == 0) gxb_num_mul(&den, &weight, &height);
+        den.sign = num.sign;
         gxbp_num_divide(&lambda[k], &num, &den, 4);
     }
+}
+
+GXFEM_API GXBP_RARE void gxb_complex_barycentric_fixed(gxb_complex *cx, uint32_t point, uint32_t element,
+                                                       gxb_fixed lambda[4]) {
+    gxbp_vec fine;
+    uint32_t k;
+    gxbp_vec_init(&fine);
+    gxb_complex_barycentric_fine(cx, point, element, fine.c);
+    for (k = 0; k < 4; k++) gxbp_fixed_set(&lambda[k], &fine.c[k]);
 }
 
 /* >>pullback: points of space in moved elements -------------------------------------------------------------------- */
@@ -7906,6 +8073,7 @@ typedef struct gxbp_operand {
     uint32_t simple;   /* vouched for, or found */
     uint32_t reached;  /* a subtriangle has got a state */
     uint32_t narrowed; /* the last intersection up to this operand, the first operand aside; 0: there is none */
+    uint32_t removed;  /* 1: it takes no part in results */
     uint32_t source, source_count;
     uint32_t bounds; /* of its leaves in gxb_boolean.bounds */
     uint32_t *order; /* sources in the order of the tree's leaves, in memory of its own */
@@ -7925,6 +8093,7 @@ typedef struct gxbp_input {
     uint32_t source_count, source_capacity;
     gxbp_operand *operands;
     uint32_t operand_count, operand_capacity;
+    uint32_t first; /* operand that is not removed; operand_count: there is none */
     /* of each operand's sources, in its tree's order */
     gxbp_leaf_boxes *bounds;
     uint32_t bound_count, bound_capacity;
@@ -11787,7 +11956,8 @@ static GXBP_COLD int gxbp_ask_inside(gxb_boolean *b, const gxbp_state *state) {
         memset(b->winding.vector + b->winding.vector_count, 0, (n - b->winding.vector_count) * sizeof(int32_t));
         b->winding.vector_count = n;
     }
-    for (i = 0; i < state->count; i++) b->winding.vector[numbers[i].operand] = numbers[i].winding;
+    for (i = 0; i < state->count; i++)
+        if (!b->in.operands[numbers[i].operand].removed) b->winding.vector[numbers[i].operand] = numbers[i].winding;
     inside = b->options.inside(b->options.user, b->winding.vector, n) != 0;
     for (i = 0; i < state->count; i++) b->winding.vector[numbers[i].operand] = 0;
     return inside;
@@ -11802,8 +11972,9 @@ static GXBP_COLD int gxbp_apply_operations(const gxb_boolean *b, const gxbp_stat
         const uint32_t i = numbers[k].operand;
         const gxbp_operand *o = &b->in.operands[i];
         const int counts = o->operation == GXB_SPLIT ? 0 : gxbp_counts(o->rule, numbers[k].winding);
+        if (o->removed) continue;
         if (i > next && b->in.operands[i - 1].narrowed >= next) inside = 0;
-        switch (i == 0 && o->operation != GXB_SPLIT ? (uint32_t)GXB_UNION : o->operation) {
+        switch (i == b->in.first && o->operation != GXB_SPLIT ? (uint32_t)GXB_UNION : o->operation) {
         case GXB_UNION: inside = inside || counts; break;
         case GXB_INTERSECTION: inside = inside && counts; break;
         case GXB_DIFFERENCE: inside = inside && !counts; break;
@@ -12369,13 +12540,12 @@ static int gxbp_is_surface(const gxb_boolean *b, uint32_t f) {
 
 /* --- states of earlier evaluations: new operands get the number 0, which is right outside of their boxes --- */
 
-/* An operand that is an intersection leaves nothing outside of it. */
-static void gxbp_note_intersections(gxb_boolean *b) {
-    uint32_t i = b->winding.stated;
+/* An operand that is an intersection leaves nothing outside of it. Operands before i are noted. */
+static void gxbp_note_intersections(gxb_boolean *b, uint32_t i) {
     for (; i < b->in.operand_count; i++) {
         gxbp_operand *o = &b->in.operands[i];
         const uint32_t before = i > 0 ? b->in.operands[i - 1].narrowed : 0;
-        o->narrowed = i > 0 && o->operation == GXB_INTERSECTION ? i : before;
+        o->narrowed = i > b->in.first && o->operation == GXB_INTERSECTION && !o->removed ? i : before;
     }
 }
 
@@ -12728,7 +12898,7 @@ static GXBP_APART void gxbp_find_states(gxb_boolean *b) {
         memset(b->winding.steps, 0, sizeof b->winding.steps);
         b->winding.state_count = b->winding.number_count = b->winding.listed = 0;
     }
-    gxbp_note_intersections(b);
+    gxbp_note_intersections(b, b->winding.stated);
     for (s = b->winding.stated; s < b->in.operand_count; s++) b->in.operands[s].reached = 0;
     b->winding.unreached = b->in.operand_count - b->winding.stated;
     if (b->winding.stated > 0) gxbp_close_states(b);
@@ -12868,15 +13038,19 @@ static uint32_t gxbp_out_vertex(gxb_boolean *b, uint32_t *vertex, uint32_t point
     return vertex[point] = b->out.point_count++;
 }
 
+/* Is the source one of a sheet (sheets 1) or of a closed surface, and not removed? */
+static int gxbp_takes_part(const gxb_boolean *b, uint32_t s, int sheets) {
+    const gxbp_operand *o = &b->in.operands[b->in.sources[s].operand];
+    return (o->operation == GXB_SPLIT) == sheets && !o->removed;
+}
+
 /* A source that covers a subtriangle: one of a sheet (sheets 1) or of a closed surface. GXB_NONE: there is none. */
 static uint32_t gxbp_cover_of(const gxb_boolean *b, uint32_t f, int sheets) {
     const uint32_t r = b->mesh.subtriangles[f].source;
     uint32_t c;
-    if (b->mesh.subtriangles[f].covers == GXB_NONE)
-        return (b->in.operands[b->in.sources[r].operand].operation == GXB_SPLIT) == sheets ? r : GXB_NONE;
+    if (b->mesh.subtriangles[f].covers == GXB_NONE) return gxbp_takes_part(b, r, sheets) ? r : GXB_NONE;
     for (c = b->mesh.subtriangles[f].covers; c != GXB_NONE; c = b->mesh.links[c].next)
-        if ((b->in.operands[b->in.sources[b->mesh.links[c].value].operand].operation == GXB_SPLIT) == sheets)
-            return b->mesh.links[c].value;
+        if (gxbp_takes_part(b, b->mesh.links[c].value, sheets)) return b->mesh.links[c].value;
     return GXB_NONE;
 }
 
@@ -13251,13 +13425,22 @@ static void gxbp_drop_old(gxb_boolean *b, uint32_t f) {
     }
 }
 
+/* Does a triangle of the subtriangle bear the name of an operand that was removed? */
+static int gxbp_names_removed(const gxb_boolean *b, uint32_t f) {
+    const uint32_t *place = b->kept.places + 2 * (size_t)f;
+    int side;
+    for (side = 0; side < 2; side++)
+        if (place[side] != GXB_NONE && b->in.operands[b->out.operands[place[side]]].removed) return 1;
+    return 0;
+}
+
 /* Makes the result show what a subtriangle shows now. A triangle that stays bears another name where the other side has
    appeared or gone: a sheet's, or a closed surface's. */
 static void gxbp_show_again(gxb_boolean *b, uint32_t f, gxbp_judgement *last) {
     const uint32_t now = gxbp_judge_subtriangle(b, f, last), before = b->out.shown[f];
     uint32_t source;
     int side;
-    if (now == before) return;
+    if (now == before && !gxbp_names_removed(b, f)) return;
     source = gxbp_cover_of(b, f, now == (GXBP_SHOWS | GXBP_SHOWS_BACK));
     for (side = 0; side < 2; side++) {
         const uint32_t bit = side ? GXBP_SHOWS_BACK : GXBP_SHOWS, t = b->kept.places[2 * f + (uint32_t)side];
@@ -14824,6 +15007,37 @@ GXFEM_API gx_result gxb_boolean_add(gxb_boolean *b, const gxb_operand *operand, 
         b->out.evaluated = 0;
     return result == GX_OK ? gxbp_end(failure, GX_OK)
                            : gxbp_fail(failure, result, gxbp_blamed(result, "vertices", "triangles"), bad);
+}
+
+/* Lists the subtriangles that may show something else without an operand: those that may meet its box. */
+static GXBP_COLD void gxbp_list_near(gxb_boolean *b, const gxbp_box *box) {
+    uint32_t i;
+    b->work.pending_count = 0;
+    gxbp_open_states(b, box);
+    if (b->error == GX_OK && GXBP_ROOM(b, mesh.changed, mesh.changed, b->work.pending_count))
+        for (i = 0; i < b->work.pending_count; i++) b->mesh.changed[b->mesh.changed_count++] = b->work.pending[i];
+    for (i = 0; i < b->work.pending_count; i++) b->mesh.subtriangles[b->work.pending[i]].state &= ~GXBP_OPEN;
+}
+
+GXFEM_API gx_result gxb_boolean_remove(gxb_boolean *b, uint32_t operand, gx_failure *failure) {
+    gxbp_operand *o;
+    uint32_t i;
+    if (b == NULL) return gxbp_refuse(failure, "boolean");
+    if (operand >= b->in.operand_count || b->in.operands[operand].removed)
+        return gxbp_fail(failure, GX_ERROR_INDEX, "operand", operand);
+    o = &b->in.operands[operand];
+    b->error = GX_OK;
+    b->budget.over_limit = 0;
+    if (b->out.shown_count > 0) gxbp_list_near(b, gxbp_operand_box(b, operand));
+    if (b->error != GX_OK) return gxbp_end(failure, b->error);
+    /* without an intersection or the first operand, the result may differ anywhere */
+    if (operand == b->in.first || o->operation == GXB_INTERSECTION) b->out.judged = 0;
+    o->removed = 1;
+    while (b->in.first < b->in.operand_count && b->in.operands[b->in.first].removed) b->in.first++;
+    gxbp_note_intersections(b, 0);
+    for (i = 0; i < b->winding.state_count; i++) b->winding.states[i].known = 0;
+    b->out.evaluated = 0;
+    return gxbp_end(failure, GX_OK);
 }
 
 /* After an error: operands are as they were added, and nothing is arranged. Computed points stay known. */

@@ -191,6 +191,44 @@ async function checkShapes(page) {
     }
 }
 
+// Drops a file onto the page.
+const give = (page, name, text) => page.evaluate(`(() => {
+    const data = new DataTransfer();
+    data.items.add(new File([${JSON.stringify(text)}], ${JSON.stringify(name)}));
+    window.dispatchEvent(new DragEvent("drop", {dataTransfer: data, cancelable: true}));
+})()`);
+
+// A box as an OBJ file of six quadrilaterals, or without the last one
+const box = faces => "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nv 0 0 1.5\nv 2 0 1.5\nv 2 1 1.5\nv 0 1 1.5\n" +
+    ["1 4 3 2", "5 6 7 8", "1 2 6 5", "3 4 8 7", "2 3 7 6", "-8 -4 -1 -5"].slice(0, faces).map(f => `f ${f}\n`).join("");
+
+// A tetrahedron as an ASCII STL file
+const tetrahedron = () => [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]].map(face => "facet normal 0 0 0\nouter loop\n" +
+    face.map(i => `vertex ${[[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]][i].join(" ")}\n`).join("") + "endloop\nendfacet\n").join("");
+
+async function checkModels(page) {
+    let meshes = await page.evaluate("page.meshes");
+    const shown = () => until(page, `page.meshes > ${meshes} && page.numbers.fragments === 1`);
+    await give(page, "box.obj", box(6));
+    check("a box becomes the body", await shown() && await page.evaluate("page.trouble") === "", await page.evaluate("page.trouble"));
+    await frames(page, 10);
+    await look(page, "box");
+    const {elements} = await numbers(page);
+    await page.key("Enter");
+    check("the box is sliced", await until(page, "page.numbers.fragments === 2"), await numbers(page));
+    await give(page, "open.obj", box(5));
+    check("an open box says why not", await until(page, "/open.obj, triangle \\d+: .*closed/.test(page.trouble)"), await page.evaluate("page.trouble"));
+    await give(page, "notes.txt", "v 0 0 0");
+    check("what is no model says so", await until(page, "/notes.txt: neither/.test(page.trouble)"), await page.evaluate("page.trouble"));
+    await give(page, "bad.obj", "v 0 0 0\nv 1 0 0\nf 1 2 3\n");
+    check("a triangle without a vertex says so", await until(page, "/bad.obj: .*vertices/.test(page.trouble)"), await page.evaluate("page.trouble"));
+    check("after bad models the body is there", (await numbers(page)).elements === elements && (await numbers(page)).fragments === 2, await numbers(page));
+    meshes = await page.evaluate("page.meshes");
+    await give(page, "tet.stl", tetrahedron());
+    check("a tetrahedron becomes the body", await shown() && await page.evaluate("page.trouble") === "", await page.evaluate("page.trouble"));
+    check("the list has the model", await page.evaluate("document.getElementById('shape').selectedOptions[0].text") === "tet.stl");
+}
+
 async function checkMemory(page) {
     await page.evaluate(`(s => { s.value = 0; s.onchange(); })(document.getElementById("shape"))`);
     await frames(page, 100);
@@ -215,6 +253,7 @@ await checkGround(page);
 await checkView(page);
 await checkTouch(page);
 await checkShapes(page);
+await checkModels(page);
 await checkMemory(page);
 check("nothing went wrong", page.errors.length === 0, page.errors);
 check("nothing came from elsewhere", page.requests.every(url => url.startsWith(address) || url.startsWith("data:")), page.requests);

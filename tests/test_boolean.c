@@ -65,6 +65,18 @@ static int same_number(const gxb_num *a, big b) {
     return 1;
 }
 
+/* limbs times 2^power */
+static big big_of_limbs(const gxb_limb *limb, uint32_t count, int power) {
+    big sum = big_zero();
+    uint32_t i, half;
+    for (i = 0; i < count; i++)
+        for (half = 0; half < GXB_LIMB_BITS / 32; half++) {
+            const double word = (double)(uint32_t)((uint64_t)limb[i] >> 32 * half);
+            sum = big_add(sum, big_scale(big_from_double(word), power + (int)(i * GXB_LIMB_BITS + 32 * half)));
+        }
+    return sum;
+}
+
 START_TEST(numbers_are_exact) {
     pc_random r = seeded((uint64_t)_i + 1);
     int i;
@@ -116,6 +128,53 @@ START_TEST(numbers_become_doubles) {
             error = big_sub(big_mul(big_from_double(d), y), x);
             assert_that(big_compare_abs(error, big_scale(x, -50)) < 0, "case %d: ratio %a", i, d);
         }
+        rat_arena_release(mark);
+    }
+}
+END_TEST
+
+/* A number from 0 to 1: any, 0, 1, or near one that is given */
+static gxb_fixed random_fixed(pc_random *r, const gxb_fixed *near) {
+    const uint32_t top = GXB_FIXED_LIMBS - 1, kind = pc_below(r, 8);
+    gxb_fixed x;
+    uint32_t i;
+    memset(&x, 0, sizeof x);
+    if (kind == 0) return x;
+    x.d[top] = (gxb_limb)1 << (GXB_FIXED_BITS % GXB_LIMB_BITS);
+    if (kind == 1) return x;
+    if (kind < 5 && near != NULL) { /* with other low bits */
+        x = *near;
+        for (i = pc_below(r, GXB_FIXED_LIMBS); i < GXB_FIXED_LIMBS; i++) {
+            x.d[0] ^= (gxb_limb)pc_below(r, 4);
+            if (i < top) x.d[i] ^= (gxb_limb)pc_next(r);
+        }
+        return x;
+    }
+    for (i = 0; i <= top; i++) x.d[i] = (gxb_limb)pc_next(r);
+    x.d[top] &= ((gxb_limb)1 << (GXB_FIXED_BITS % GXB_LIMB_BITS)) - 1;
+    return x;
+}
+
+START_TEST(determinants_of_fixed_numbers) {
+    pc_random r = seeded((uint64_t)_i + 1);
+    int i;
+    for (i = 0; i < 10000; i++) {
+        const rat_mark mark = rat_arena_mark();
+        gxb_fixed x[4][3];
+        big v[4][3], cross[3], det;
+        uint32_t n, k;
+        double d;
+        for (n = 0; n < 4; n++)
+            for (k = 0; k < 3; k++) {
+                x[n][k] = random_fixed(&r, n == 0 ? NULL : &x[pc_below(&r, n)][k]);
+                v[n][k] = big_of_limbs(x[n][k].d, GXB_FIXED_LIMBS, -GXB_FIXED_BITS);
+            }
+        for (n = 1; n < 4; n++)
+            for (k = 0; k < 3; k++) v[n][k] = big_sub(v[n][k], v[0][k]);
+        big_cross(v[2], v[3], cross);
+        det = big_dot(v[1], cross);
+        d = gxb_fixed_determinant(x[0], x[1], x[2], x[3]);
+        assert_that(big_compare_abs(big_sub(big_from_double(d), det), big_scale(det, -51)) <= 0, "case %d: %a", i, d);
         rat_arena_release(mark);
     }
 }
@@ -1103,6 +1162,17 @@ static void check_walls(const model *m, uint32_t cut) {
     }
 }
 
+/* Pairs of doubles tell the right side, or none. */
+enum { UNTOLD = 2 }; /* as the header has it */
+static void check_pair_side(const model *m, uint32_t point, uint32_t plane) {
+    const gxb_cpoint *p = &m->cx->store.points[point];
+    const int sign = p->kind == GXB_EXPLICIT   ? UNTOLD
+                   : p->kind == GXB_LINE_PLANE ? gxbp_pair_line_side(m->cx, p->def, plane)
+                                               : gxbp_pair_planes_side(m->cx, p->def, plane);
+    assert_that(sign == UNTOLD || sign == pc_exact_side(&m->points[point], &m->planes[plane]),
+                "by pairs: point %u plane %u", point, plane);
+}
+
 /* The kernel's signs of all points and planes against the oracle's. */
 static void check_signs(const model *m, pc_random *r, int count) {
     int i;
@@ -1113,6 +1183,7 @@ static void check_signs(const model *m, pc_random *r, int count) {
         const pc_point x = pc_exact_explicit(m->s->nodes[node], m->s->nodes[0]);
         assert_that(gxb_complex_side(m->cx, point, plane) == pc_exact_side(&m->points[point], &m->planes[plane]),
                     "point %u plane %u", point, plane);
+        check_pair_side(m, point, plane);
         assert_that(gxb_complex_compare(m->cx, point, (int)axis, m->s->nodes[node][axis]) ==
                         pc_exact_compare(&m->points[point], &x, (int)axis),
                     "point %u against node %u on axis %u", point, node, axis);
@@ -1130,14 +1201,16 @@ static void check_barycentric(const model *m, uint32_t element) {
         for (i = 0; i < count; i++) {
             const uint32_t point = edge_start(cx, cx->pool[cx->facets[cx->pool[first + i]].loop]);
             double lambda[4];
+            gxb_fixed fixed[4];
             gxbp_vec fine;
             gxbp_vec_init(&fine);
+            gxb_complex_barycentric_fixed(cx, point, element, fixed);
             gxb_complex_barycentric(cx, point, element, lambda);
             gxb_complex_barycentric_fine(cx, point, element, fine.c);
             for (k = 0; k < 4; k++) {
                 double face[3][3];
                 pc_plane plane;
-                big num, den, error, q = big_zero();
+                big num, den, error, q;
                 for (j = 0; j < 3; j++) memcpy(face[j], m->s->nodes[v[tet_faces[k][j]]], sizeof face[j]);
                 plane = pc_exact_plane(face, m->s->nodes[0]);
                 num = pc_scaled_height(&m->points[point], &plane);
@@ -1146,17 +1219,14 @@ static void check_barycentric(const model *m, uint32_t element) {
                 error = big_sub(big_mul(big_from_double(lambda[k]), den), num);
                 assert_that(big_compare_abs(error, big_scale(num, -49)) <= 0, "point %u element %u lambda %u = %a",
                             point, element, k, lambda[k]);
-                for (j = 0; j < fine.c[k].n; j++) {
-                    const gxb_limb limb = fine.c[k].d[j];
-                    const int32_t base = (fine.c[k].exp + (int32_t)j) * GXB_LIMB_BITS;
-                    q = big_add(q, big_mul(big_from_double((double)(uint32_t)limb), big_from_double(pc_power(base))));
-                    if (GXB_LIMB_BITS == 64)
-                        q = big_add(q, big_mul(big_from_double((double)((uint64_t)limb >> 32)),
-                                               big_from_double(pc_power(base + 32))));
-                }
+                q = big_of_limbs(fine.c[k].d, fine.c[k].n, fine.c[k].exp * GXB_LIMB_BITS);
                 q.sign = q.sign == 0 ? 0 : fine.c[k].sign;
                 error = big_sub(big_mul(q, den), num);
                 assert_that(big_compare_abs(error, big_scale(num, -180)) <= 0, "point %u element %u: fine lambda %u",
+                            point, element, k);
+                q = big_of_limbs(fixed[k].d, GXB_FIXED_LIMBS, -GXB_FIXED_BITS);
+                error = big_sub(big_mul(q, den), num);
+                assert_that(big_compare_abs(error, big_scale(den, -179)) <= 0, "point %u element %u: fixed lambda %u",
                             point, element, k);
             }
         }
@@ -2134,6 +2204,7 @@ static Suite *boolean_suite(void) {
     tcase_add_loop_test(numbers, numbers_are_exact, 0, 2);
     tcase_add_loop_test(numbers, numbers_become_doubles, 0, 2);
     tcase_add_test(numbers, numbers_beyond_doubles);
+    tcase_add_loop_test(numbers, determinants_of_fixed_numbers, 0, 2);
     tcase_add_test(numbers, numbers_take_a_shift);
     tcase_add_test(numbers, numbers_have_room);
     tcase_add_test(numbers, quotients_are_short);

@@ -652,12 +652,18 @@ START_TEST(refused_shapes) {
     texture[5] = 0;
     REFUSED_SHAPE(s->triangle_count = 11, GX_ERROR_NOT_CLOSED, "shape.surfaces.triangles", failure.index, 1);
     ck_assert_uint_lt(failure.index, 11);
+    ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_ERROR_NOT_CLOSED);
     s->triangle_count = 12;
     surfaces[0].vertex_count = 0;
+    ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_ERROR_EMPTY);
     REFUSED_SHAPE(s->triangle_count = 12, GX_ERROR_EMPTY, "shape.surfaces.vertex_count", SIZE_MAX, 0);
     surfaces[0].vertex_count = 8;
     REFUSED_SHAPE(desc.positions = x, GX_ERROR_ARGUMENT, "positions", SIZE_MAX, SIZE_MAX);
     desc.positions = NULL;
+    REFUSED_SHAPE(desc.node_count = 1, GX_ERROR_ARGUMENT, "positions", SIZE_MAX, SIZE_MAX);
+    desc.node_count = 0;
+    REFUSED_SHAPE(desc.element_count = 1, GX_ERROR_ARGUMENT, "elements", SIZE_MAX, SIZE_MAX);
+    desc.element_count = 0;
     REFUSED_SHAPE(desc.elements = t, GX_ERROR_ARGUMENT, "elements", SIZE_MAX, SIZE_MAX);
     desc.elements = NULL;
     REFUSED_SHAPE(desc.element_materials = &one, GX_ERROR_ARGUMENT, "element_materials", SIZE_MAX, SIZE_MAX);
@@ -690,7 +696,7 @@ START_TEST(memory_runs_out) {
     size_t n;
     shape.cells = _i == 0 ? 2 : 0;
     shape.unknowns = _i == 0 ? 0 : 300;
-    for (n = 0;; n += 2 * FEWER + 1) {
+    for (n = 0;; n += n < 40 ? 1 : 2 * FEWER + 1) { /* the first are those of the grid */
         memory m = plenty();
         gx_failure failure;
         gx_body *body = NULL;

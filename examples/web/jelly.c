@@ -1,71 +1,46 @@
 /* jelly.c: a body for a web page, as a WebAssembly module without imports. worker.js calls it; `make web` builds it.
 
-   There is one body. It hangs by its top, or lies on a ground at z = 0. A stroke is a blade that cuts while the body
-   moves. Functions return 0, or the number of an error in words (jelly_error_text). Numbers go through one array,
-   jelly_numbers.
+   There is one body: a generated one, or all inside of a model's surface. It hangs by its top, or lies on a ground at
+   z = 0. Its pieces touch each other and the ground. A stroke is a blade that cuts while the body moves. Functions
+   return 0, or the number of an error in words (jelly_error_text). Numbers go through one array, jelly_numbers.
 
    contents
-     >>body       shapes, what holds them
+     >>body       shapes, models, what holds them
      >>drawing    the skin, and where it is
      >>cutting    strokes, going back
      >>moving     a hand that pulls, steps */
 #define GXFEM_STATIC
+/* What the page loads should be small: only the solver, which takes the time of frames, is compiled for speed. */
+#define GXFEM_SOLVE_IMPLEMENTATION
+#include "../../gxfem_solve.h"
+#pragma clang attribute push(__attribute__((minsize)), apply_to = function)
 #define GXFEM_IMPLEMENTATION
 #include "../../gxfem.h"
+#pragma clang attribute pop
 
 #include "../gxshape.h"
 
 #define EXPORT(name) __attribute__((export_name(#name), used))
 
-enum { NUMBERS = 16, MARKS = 12, SHAPE_FAILED = 1000 };
+enum { NUMBERS = 16, MARKS = 12, MODEL = 4, SHAPE_FAILED = 1000 };
 
 static gx_body *body;
 static gx_blade *blade;
 static gx_skin skin;
 static double numbers[NUMBERS];
 static float *positions, *normals; /* skin.vertex_count x 3, in space, m */
-static gxs_point *points;          /* of the skin, for the ground */
-static size_t point_count;
 static gx_anchor grip;
 static gxs_spring spring;
 static int holding;
 static double youngs; /* Pa */
 static gx_body *marks[MARKS];
 static size_t mark_count;
+static gx_failure failure;     /* of the last new body */
+static double *model_vertices; /* model_vertex_count x 3; the page's */
+static uint32_t *model_triangles;
+static uint32_t model_vertex_count, model_triangle_count;
 
 /* ---------------------------------------------------------------------------------------------- >>drawing */
-
-static int compare_corners(const void *a, const void *b) { return memcmp(a, b, 5 * sizeof(uint32_t)); }
-
-/* Corners of the skin that are different points of the body: those touch the ground. */
-static int find_points(void) {
-    typedef uint32_t corner[6]; /* material point; copies of weight not 0, ascending; vertex */
-    corner *corners = (corner *)malloc((skin.vertex_count + 1) * sizeof *corners);
-    gxs_point *room = (gxs_point *)realloc(points, (skin.vertex_count + 1) * sizeof *points);
-    size_t v, i, k;
-    if (room) points = room;
-    point_count = 0;
-    if (!corners || !room) {
-        free(corners);
-        return GX_ERROR_MEMORY;
-    }
-    for (v = 0; v < skin.vertex_count; v++) {
-        uint32_t *c = corners[v];
-        c[0] = skin.vertex_point[v];
-        for (k = 0; k < 4; k++) {
-            const uint32_t copy = skin.vertex_weights[4 * v + k] > 0 ? skin.vertex_copies[4 * v + k] : UINT32_MAX;
-            for (i = k; i > 0 && c[i] > copy; i--) c[i + 1] = c[i];
-            c[i + 1] = copy;
-        }
-        c[5] = (uint32_t)v;
-    }
-    qsort(corners, skin.vertex_count, sizeof *corners, compare_corners);
-    for (i = 0; i < skin.vertex_count; i++)
-        if (i == 0 || compare_corners(corners[i], corners[i - 1]) != 0)
-            points[point_count++] = gx_skin_point(&skin, corners[i][5]);
-    free(corners);
-    return GX_OK;
-}
 
 static int refresh(void) {
     gx_skin_desc shading;
@@ -80,7 +55,7 @@ static int refresh(void) {
     if (p) positions = p;
     n = (float *)realloc(normals, (3 * skin.vertex_count + 1) * sizeof *n);
     if (n) normals = n;
-    return p && n ? find_points() : GX_ERROR_MEMORY;
+    return p && n ? GX_OK : GX_ERROR_MEMORY;
 }
 
 /* Where the skin is now: fills what jelly_positions and jelly_normals show. */
@@ -99,6 +74,12 @@ EXPORT(jelly_surfaces) const uint32_t *jelly_surfaces(void) { return skin.triang
 EXPORT(jelly_numbers) double *jelly_numbers(void) { return numbers; }
 EXPORT(jelly_error_text) const char *jelly_error_text(int result) {
     return result >= SHAPE_FAILED ? "the shape could not be filled with elements" : gx_result_text((gx_result)result);
+}
+
+/* The triangle that the last model was refused for, or -1 */
+EXPORT(jelly_error_triangle) int jelly_error_triangle(void) {
+    const int known = failure.result != GX_OK && failure.field && strstr(failure.field, "triangles") != NULL;
+    return known && failure.index < model_triangle_count ? (int)failure.index : -1;
 }
 
 /* What there is: fragments, elements, unknowns. And each fragment's number for life, by its place in jelly_fragments */
@@ -164,16 +145,49 @@ static int make_block(gxshape_mesh *mesh, const size_t n[3], const double low[3]
     return GX_OK;
 }
 
-/* kind 0: a cube of jelly that hangs; 1: a thin slab that hangs; 2: an octopus, held by its head; 3: a bunny, which
-   stands on the ground. *held: what holds it */
+/* Room for a model: the page writes it, jelly_new(MODEL, ...) takes it. */
+EXPORT(jelly_model_room) int jelly_model_room(uint32_t vertices, uint32_t triangles) {
+    free(model_vertices);
+    free(model_triangles);
+    model_vertices = (double *)malloc(((size_t)vertices + 1) * 3 * sizeof(double));
+    model_triangles = (uint32_t *)malloc(((size_t)triangles + 1) * 3 * sizeof(uint32_t));
+    model_vertex_count = vertices;
+    model_triangle_count = triangles;
+    return model_vertices && model_triangles ? GX_OK : GX_ERROR_MEMORY;
+}
+
+EXPORT(jelly_model_vertices) double *jelly_model_vertices(void) { return model_vertices; }
+EXPORT(jelly_model_triangles) uint32_t *jelly_model_triangles(void) { return model_triangles; }
+
+/* Scales positions to 1.4 m across, with the lowest at a height. middle: receives their mean */
+static void settle_positions(double *positions_of, size_t count, double height, double middle[3]) {
+    double lowest[3] = {1e300, 1e300, 1e300}, highest[3] = {-1e300, -1e300, -1e300}, widest = 0;
+    size_t i;
+    for (i = 0; i < 3 * count; i++) {
+        const double x = positions_of[i];
+        lowest[i % 3] = x < lowest[i % 3] ? x : lowest[i % 3];
+        highest[i % 3] = x > highest[i % 3] ? x : highest[i % 3];
+    }
+    for (i = 0; i < 3; i++) {
+        widest = highest[i] - lowest[i] > widest ? highest[i] - lowest[i] : widest;
+        middle[i] = 0;
+    }
+    for (i = 0; i < 3 * count; i++) {
+        const double from = i % 3 == 2 ? lowest[2] : 0.5 * (lowest[i % 3] + highest[i % 3]);
+        positions_of[i] = (positions_of[i] - from) * (1.4 / widest) + (i % 3 == 2 ? height : 0);
+        middle[i % 3] += positions_of[i] / (double)count;
+    }
+}
+
+/* kind 0: a cube of jelly that hangs; 1: a slab of one element's thickness that hangs; 2: an octopus, held by its head;
+   3: a bunny, which stands on the ground. *held: what holds it */
 static int make_shape(gxshape_mesh *mesh, int kind, gx_region *held) {
-    static const size_t cube[3] = {12, 12, 12}, slab[3] = {20, 2, 20};
+    static const size_t cube[3] = {12, 12, 12}, slab[3] = {20, 1, 20};
     static const double low[3] = {-0.5, -0.5, 0.6}, side[3] = {-0.5, -0.05, 0.6};
     static const char *const names[] = {"octopus", "bunny"};
     gxshape_field field;
-    double lowest[3] = {1e300, 1e300, 1e300}, highest[3] = {-1e300, -1e300, -1e300}, middle[3] = {0, 0, 0}, scale;
+    double middle[3];
     const gxshape_named *named;
-    size_t i;
     *held = gx_region_half_space(2, 1, 1.6 - 1e-6);
     if (kind == 0) return make_block(mesh, cube, low, 1.0 / 12);
     if (kind == 1) return make_block(mesh, slab, side, 1.0 / 20);
@@ -181,18 +195,7 @@ static int make_shape(gxshape_mesh *mesh, int kind, gx_region *held) {
     memset(&field, 0, sizeof field);
     named->make(&field);
     if (gxshape_fill(&field, 0.8 * named->coarsest, mesh) != NULL) return SHAPE_FAILED;
-    for (i = 0; i < 3 * mesh->node_count; i++) {
-        const double x = mesh->positions[i];
-        lowest[i % 3] = x < lowest[i % 3] ? x : lowest[i % 3];
-        highest[i % 3] = x > highest[i % 3] ? x : highest[i % 3];
-    }
-    /* 1.4 m wide */
-    scale = 1.4 / (highest[0] - lowest[0] > highest[1] - lowest[1] ? highest[0] - lowest[0] : highest[1] - lowest[1]);
-    for (i = 0; i < 3 * mesh->node_count; i++) {
-        const double low_or_middle = i % 3 == 2 ? lowest[2] : 0.5 * (lowest[i % 3] + highest[i % 3]);
-        mesh->positions[i] = (mesh->positions[i] - low_or_middle) * scale + (i % 3 == 2 && kind == 2 ? 0.5 : 0);
-        middle[i % 3] += mesh->positions[i] / (double)mesh->node_count;
-    }
+    settle_positions(mesh->positions, mesh->node_count, kind == 2 ? 0.5 : 0, middle);
     *held = kind == 2 ? gx_region_sphere(middle, 0.15) : gx_region_half_space(2, -1, 0.08);
     return GX_OK;
 }
@@ -206,28 +209,67 @@ static int take_blade(void) {
     return blade ? GX_OK : (int)gx_blade_create(body, &desc, &blade, NULL);
 }
 
-/* A new body. young: Pa */
-EXPORT(jelly_new) int jelly_new(int kind, double young) {
+/* What is inside of the model stands on the ground, which holds its feet; 14 cubes along its longest side. */
+static int make_model(gx_body_desc *desc, gx_region *held, gx_body **made) {
+    gx_surface surface;
+    gx_shape shape;
+    double middle[3];
+    settle_positions(model_vertices, model_vertex_count, 0, middle);
+    memset(&surface, 0, sizeof surface);
+    memset(&shape, 0, sizeof shape);
+    surface.vertices = model_vertices;
+    surface.vertex_count = model_vertex_count;
+    surface.triangles = model_triangles;
+    surface.triangle_count = model_triangle_count;
+    shape.surfaces = &surface;
+    shape.surface_count = 1;
+    shape.cells = 14;
+    desc->shape = &shape;
+    *held = gx_region_half_space(2, -1, 0.05);
+    return (int)gx_body_create(desc, made, &failure);
+}
+
+/* The body of a generated mesh */
+static int make_mesh(gx_body_desc *desc, int kind, gx_region *held, gx_body **made) {
     gxshape_mesh mesh;
-    gx_body_desc desc;
-    gx_region held;
     int result;
-    drop();
     memset(&mesh, 0, sizeof mesh);
+    result = make_shape(&mesh, kind, held);
+    desc->positions = mesh.positions;
+    desc->node_count = mesh.node_count;
+    desc->elements = mesh.elements;
+    desc->element_count = mesh.element_count;
+    if (result == GX_OK) result = (int)gx_body_create(desc, made, &failure);
+    gxshape_mesh_release(&mesh);
+    return result;
+}
+
+/* A new body: of a kind that make_shape has, or the page's model. young: Pa. After an error the old one goes on. */
+EXPORT(jelly_new) int jelly_new(int kind, double young) {
+    gx_body_desc desc;
+    gx_contact_desc contact;
+    gx_region held;
+    gx_body *made = NULL;
+    int result;
+    memset(&failure, 0, sizeof failure);
     memset(&desc, 0, sizeof desc);
-    result = make_shape(&mesh, kind, &held);
-    desc.positions = mesh.positions;
-    desc.node_count = mesh.node_count;
-    desc.elements = mesh.elements;
-    desc.element_count = mesh.element_count;
-    desc.young = youngs = young;
+    memset(&contact, 0, sizeof contact);
+    contact.friction = 0.5;
+    desc.affine_below = kind == 1;
+    desc.young = young;
     desc.poisson = 0.4;
     desc.density = 1000;
-    if (result == GX_OK) result = (int)gx_body_create(&desc, &body, NULL);
-    gxshape_mesh_release(&mesh);
-    if (result != GX_OK) return result;
-    result = (int)gx_body_hold(body, &held, 1, NULL);
-    if (result == GX_OK) result = take_blade();
+    result = kind == MODEL ? make_model(&desc, &held, &made) : make_mesh(&desc, kind, &held, &made);
+    if (result == GX_OK) result = (int)gx_body_hold(made, &held, 1, &failure);
+    if (result == GX_OK) result = (int)gx_body_contact(made, &contact, &failure);
+    if (result != GX_OK) {
+        gx_body_destroy(made);
+        return result;
+    }
+    drop();
+    body = made;
+    youngs = young;
+    result = take_blade();
     return result == GX_OK ? refresh() : result;
 }
 
@@ -300,7 +342,7 @@ EXPORT(jelly_release) void jelly_release(void) { holding = 0; }
 /* A step of numbers[0] seconds under gravity numbers[1], m/s2 */
 EXPORT(jelly_step) int jelly_step(void) {
     gx_step_desc step;
-    gxs_plane ground;
+    gx_collider ground;
     memset(&step, 0, sizeof step);
     memset(&ground, 0, sizeof ground);
     step.dt = numbers[0];
@@ -308,13 +350,11 @@ EXPORT(jelly_step) int jelly_step(void) {
     step.integrator = GXS_BDF2;
     step.mass_damping = 0.4;
     step.sleep_speed = 0.01;
-    ground.normal[2] = 1;
-    ground.stiffness = 0.02 * youngs;
+    ground.kind = GX_COLLIDER_PLANE;
+    ground.pose[0] = ground.pose[5] = ground.pose[10] = 1;
     ground.friction = 0.5;
-    step.planes = &ground;
-    step.plane_count = 1;
-    step.points = points;
-    step.point_count = point_count;
+    step.colliders = &ground;
+    step.collider_count = 1;
     step.springs = &spring;
     step.spring_anchors = &grip;
     step.spring_count = holding ? 1 : 0;

@@ -3,7 +3,7 @@
    contents
      >>view     rays through the cursor, the ground's grid
      >>tools    knife, hand, view: by mouse, pen, fingers and keys
-     >>page     controls, numbers */
+     >>page     controls, models, numbers */
 "use strict";
 
 /* ---------------------------------------------------------------------------------------------------- >>view */
@@ -13,7 +13,7 @@ const canvas = document.getElementById("view"), at = id => document.getElementBy
 
 /* All that the page knows; a test reads it, too. */
 const page = {viewer: null, worker: null, tool: "knife", paused: false, ready: false, grabbed: null, numbers: null, frames: 0,
-              meshes: 0, trouble: ""};
+              meshes: 0, trouble: "", model: ""};
 
 /* The ray through a point of the canvas: from the eye, and so far that it has passed the body */
 function rayAt(x, y) {
@@ -131,7 +131,7 @@ function sliceMiddle(down) {
 
 const keys = {
     k: () => choose("knife"), h: () => choose("hand"), v: () => choose("view"), u: undo, n: make, w: wires, c: colours,
-    " ": pause, Enter: event => sliceMiddle(event.shiftKey),
+    o: () => at("file").click(), " ": pause, Enter: event => sliceMiddle(event.shiftKey),
     ArrowLeft: () => turn(-0.1, 0), ArrowRight: () => turn(0.1, 0), ArrowUp: () => turn(0, 0.1), ArrowDown: () => turn(0, -0.1),
     "+": () => zoom(1.15), "=": () => zoom(1.15), "-": () => zoom(1 / 1.15),
 };
@@ -181,10 +181,30 @@ function colours() {
 
 const young = () => Math.round(10 ** Number(at("young").value));
 
+function clear() { page.trouble = at("trouble").textContent = ""; }
+
 function make() {
-    page.trouble = at("trouble").textContent = "";
-    page.viewer.camera.fit([-0.9, -0.9, 0], [0.9, 0.9, 1.7]);
+    clear();
     page.worker.postMessage({make: Number(at("shape").value), young: young()});
+}
+
+/* A model's file becomes the body, and a choice of its own. */
+async function open(file) {
+    clear();
+    const model = await file.arrayBuffer();
+    page.model = file.name;
+    page.worker.postMessage({model, name: file.name, young: young()}, [model]);
+}
+
+/* The body is another one now. */
+function begin(kind) {
+    const list = at("shape");
+    if (kind === shapes.length) {
+        if (list.length === kind) list.add(new Option("", kind));
+        list.options[kind].text = page.model;
+        list.value = kind;
+    }
+    page.viewer.camera.fit([-0.9, -0.9, 0], [0.9, 0.9, 1.7]);
 }
 
 let drawing = false;
@@ -211,6 +231,8 @@ function take({data}) {
         page.ready = true;
         at("engine").textContent = data.simd ? "WebAssembly, vectors" : "WebAssembly";
         make();
+    } else if ("made" in data) {
+        begin(data.made);
     } else if (data.trouble) {
         page.trouble = at("trouble").textContent = data.trouble;
     } else if ("grabbed" in data) {
@@ -232,7 +254,7 @@ function take({data}) {
     }
 }
 
-function open() {
+function start() {
     const dark = matchMedia("(prefers-color-scheme: dark)").matches;
     try {
         page.viewer = new GxViewer(canvas);
@@ -252,6 +274,16 @@ function open() {
     at("pause").onclick = pause;
     at("undo").onclick = undo;
     at("new").onclick = make;
+    at("open").onclick = () => at("file").click();
+    at("file").onchange = () => {
+        if (at("file").files.length > 0) open(at("file").files[0]);
+        at("file").value = "";
+    };
+    window.addEventListener("dragover", event => event.preventDefault());
+    window.addEventListener("drop", event => {
+        event.preventDefault();
+        if (event.dataTransfer.files.length > 0) open(event.dataTransfer.files[0]);
+    });
     at("wires").onclick = wires;
     at("colours").onclick = colours;
     for (const button of document.querySelectorAll("[data-tool]")) button.onclick = () => choose(button.dataset.tool);
@@ -259,4 +291,4 @@ function open() {
     window.addEventListener("resize", draw);
 }
 
-open();
+start();

@@ -2,14 +2,16 @@
 
    Messages in: {files, plain} first: folder of the modules; plain: the one without vectors. Then
      {make: kind, young}   a new body      {undo: true}    goes back to before the last stroke
+     {model: bytes, name, young}           a new body of a closed surface: an OBJ or STL file
      {stroke: [6 numbers], first, last}    the blade's edge, two points in space; first: a stroke begins, last: it ends
      {grab: [6 numbers]}, {pull: [3 numbers]}, {release: true}     a hand: ray; point
      {pause: flag}, {gravity: m/s2}        {seen: true}    the page has shown the last frame
-   Messages out: {ready, simd}; {grabbed: point or null}; {trouble: text};
+   Messages out: {ready, simd}; {made: kind}; {grabbed: point or null}; {trouble: text};
      {frame: {mesh or null, positions, normals}, numbers: {fragments, elements, unknowns, step, cut, marks, memory}} */
 "use strict";
 
 let lib = null;          /* exports of the module */
+let made = false;        /* there is a body */
 let mesh = true;         /* the page lacks the present triangles */
 let waiting = false;     /* the page has not shown the last frame */
 let paused = false, gravity = 9.81;
@@ -30,6 +32,68 @@ function text(at) {
 function good(result) {
     if (result !== 0) postMessage({trouble: text(lib.jelly_error_text(result))});
     return result === 0;
+}
+
+/* The vertices and triangles of an OBJ file; polygons become fans. */
+function readObj(lines) {
+    const vertices = [], triangles = [];
+    for (const line of lines.split("\n")) {
+        const word = line.trim().split(/\s+/);
+        if (word[0] === "v") vertices.push(...word.slice(1, 4).map(Number));
+        if (word[0] !== "f") continue;
+        const corner = word.slice(1).map(text => parseInt(text, 10)).map(i => i < 0 ? vertices.length / 3 + i : i - 1);
+        for (let k = 2; k < corner.length; k++) triangles.push(corner[0], corner[k - 1], corner[k]);
+    }
+    return {vertices, triangles};
+}
+
+/* The corners of an STL file's triangles; those with equal coordinates become one vertex. */
+function readStl(bytes) {
+    const view = new DataView(bytes), count = bytes.byteLength >= 84 ? view.getUint32(80, true) : 0, corners = [];
+    if (bytes.byteLength === 84 + 50 * count) {
+        for (let t = 0; t < count; t++)
+            for (let k = 3; k < 12; k++) corners.push(view.getFloat32(84 + 50 * t + 4 * k, true));
+    } else {
+        for (const match of new TextDecoder().decode(bytes).matchAll(/vertex\s+(\S+)\s+(\S+)\s+(\S+)/g))
+            corners.push(...match.slice(1, 4).map(Number));
+    }
+    const known = new Map(), vertices = [], triangles = [];
+    for (let i = 0; i < corners.length; i += 3) {
+        const x = corners.slice(i, i + 3).map(c => c + 0), key = x.join();
+        if (!known.has(key)) {
+            known.set(key, vertices.length / 3);
+            vertices.push(...x);
+        }
+        triangles.push(known.get(key));
+    }
+    return {vertices, triangles};
+}
+
+/* A file becomes the module's model. Throws where it is none. */
+function takeModel(bytes, name) {
+    const model = /\.stl$/i.test(name) ? readStl(bytes) : /\.obj$/i.test(name) ? readObj(new TextDecoder().decode(bytes)) : null;
+    if (!model) throw new Error(`${name}: neither an OBJ nor an STL file`);
+    const {vertices, triangles} = model, count = vertices.length / 3;
+    if (triangles.length === 0) throw new Error(`${name}: has no triangles`);
+    if (vertices.length % 3 !== 0 || !vertices.every(Number.isFinite)) throw new Error(`${name}: has a vertex that is no point`);
+    if (!triangles.every(i => i >= 0 && i < count)) throw new Error(`${name}: has a triangle without one of its vertices`);
+    if (lib.jelly_model_room(count, triangles.length / 3) !== 0) throw new Error(`${name}: is too large`);
+    new Float64Array(lib.memory.buffer, lib.jelly_model_vertices(), vertices.length).set(vertices);
+    new Uint32Array(lib.memory.buffer, lib.jelly_model_triangles(), triangles.length).set(triangles);
+}
+
+/* A new body; the old one stays where there can be none. */
+const MODEL = 4;
+function make(kind, young, name = "") {
+    const result = lib.jelly_new(kind, young), triangle = lib.jelly_error_triangle();
+    const blame = name + (triangle < 0 ? "" : `, triangle ${triangle}`);
+    if (result !== 0) {
+        postMessage({trouble: (blame ? blame + ": " : "") + text(lib.jelly_error_text(result))});
+        return;
+    }
+    strokes.length = 0;
+    made = mesh = true;
+    postMessage({made: kind});
 }
 
 async function start(files, plain) {
@@ -82,7 +146,6 @@ function show() {
 }
 
 /* A frame: strokes, a step, a picture. Where steps take longer than frames, time goes slower. */
-let made = false;
 function tick() {
     const begin = performance.now();
     if (made) {
@@ -101,9 +164,14 @@ function tick() {
 onmessage = ({data}) => {
     if (data.files !== undefined) start(data.files, data.plain).catch(error => postMessage({trouble: error.message}));
     else if (data.make !== undefined) {
-        strokes.length = 0;
-        made = good(lib.jelly_new(data.make, data.young));
-        mesh = true;
+        make(data.make, data.young);
+    } else if (data.model) {
+        try {
+            takeModel(data.model, data.name);
+            make(MODEL, data.young, data.name);
+        } catch (error) {
+            postMessage({trouble: error.message});
+        }
     } else if (data.stroke) strokes.push(data);
     else if (data.grab) {
         numbers().set(data.grab);
