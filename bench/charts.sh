@@ -1,6 +1,7 @@
 #!/bin/sh
 # Draws what benches have measured.
 # usage: sh bench/charts.sh TABLES CHARTS
+#        sh bench/charts.sh TABLES CHARTS blade     draws blade.svg alone
 #     TABLES  directory of the benches' CSV files
 #     CHARTS  directory of the SVG files
 # quadrature.csv gives quadrature.svg and quadrature_triangles.svg, stepping.csv stepping.svg and stepping_cuts.svg, kernel.csv chains.svg,
@@ -12,7 +13,7 @@ mkdir -p "$charts" || exit 2
 # where BENCH: when its table was made, and on what
 where() { echo "$(date -r "$tables/$1.csv" +%Y-%m-%d), $(uname -m | tr _ -), one thread"; }
 
-for bench in quadrature conditioning stepping front space thin scaling blade open kernel; do
+for bench in ${3:-quadrature conditioning stepping front space thin scaling blade open kernel}; do
     [ -s "$tables/$bench.csv" ] || { echo "$0: $tables/$bench.csv is missing: make bench-$bench" >&2; exit 2; }
 done
 
@@ -407,5 +408,10 @@ set xlabel "cubes"; set ylabel "s of the processor"; set y2label "MB"; set ytics
 plot \$time using 1:(\$2/1e6) with linespoints ls 1 title "the whole chain, s", \$step using 1:(\$2/1e6) with linespoints ls 2 title "the last step, s", \$memory using 1:(\$2/1e6) axes x1y2 with linespoints ls 3 title "memory, MB (right)"
 END
 }
+if [ "${3:-}" = blade ]; then
+    blade | gnuplot || exit 1
+    echo "wrote $charts/blade.svg"
+    exit 0
+fi
 panels | gnuplot && triangles | gnuplot && conditioning | gnuplot && stepping | gnuplot && stepping_cuts | gnuplot && front | gnuplot && space | gnuplot && thin | gnuplot && scaling | gnuplot && blade | gnuplot && open | gnuplot && chains | gnuplot || exit 1
 echo "wrote $charts/quadrature.svg, quadrature_triangles.svg, conditioning.svg, stepping.svg, stepping_cuts.svg, front.svg, space.svg, thin.svg, scaling.svg, blade.svg, open.svg, chains.svg"
