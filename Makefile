@@ -67,6 +67,7 @@ help:
 	@echo "  stepping       error of the motion against time, over all settings; other methods"
 	@echo "  front          time to reach an error beside local solvers that games use, XPBD and VBD, by size and stiffness"
 	@echo "  space          the same cuts under refinement beside conforming meshes: locking of thin slices"
+	@echo "  thin           slices thinner than their elements, with affine copies and without: how far they bend, iterations, time"
 	@echo "  table2         scenes of GXFEM's Table 2 by RXFEM, virtual nodes and the literal Algorithm 1 too"
 	@echo "  conditioning   RXFEM's Fig. 14, and a corner piece"
 	@echo "  failure        hard cases: which method is right, wrong, refuses, diverges, crashes"
@@ -371,7 +372,7 @@ check-wasm:
 
 # ---- benches. Only their CSV goes to stdout. BENCH=--small: smaller ones, with a folder of their own for tables and charts
 
-benches = quadrature stepping front space table2 conditioning failure scaling kernel open smallest solver violent accuracy drift frames skin blade strokes soak
+benches = quadrature stepping front space thin table2 conditioning failure scaling kernel open smallest solver violent accuracy drift frames skin blade strokes soak
 small = $(filter --small,$(BENCH))
 tables = $(BUILD)/bench$(if $(small),/small)
 # The compiler's own default: with -std=c99 gcc fuses no multiplications with additions, whatever -march says.
@@ -385,7 +386,7 @@ $(filter-out %/solver,$(bench_programs)): $(BUILD)/bench/%: bench/%.c $(wildcard
 	@mkdir -p $(@D)
 	@$(CC) $(bench_standard) $(WARNINGS) $(BENCH_CFLAGS) -pthread $< -o $@ $(LDFLAGS) -lm
 
-$(BUILD)/bench/space $(BUILD)/bench/scaling $(BUILD)/bench/open: examples/gxio.h examples/gxjson.h
+$(BUILD)/bench/space $(BUILD)/bench/thin $(BUILD)/bench/scaling $(BUILD)/bench/open: examples/gxio.h examples/gxjson.h
 $(BUILD)/bench/kernel: tests/workloads.h tests/oracle.h tests/rational.h
 
 $(BUILD)/bench/solver: bench/solver.c $(wildcard bench/*.h) $(headers)

@@ -358,7 +358,7 @@ typedef enum gxs_integrator {
 } gxs_integrator;
 
 #define GXS_POINT_OWN  4  /* copies for which a point has room itself */
-#define GXS_POINT_MOST 32 /* copies of a point at most */
+#define GXS_POINT_MOST 64 /* copies of a point at most */
 
 /* A material point: a node, a point of an element, a vertex of a skin. Its displacement is the sum of weight x that of
  * copy, over a span of count copies. Up to GXS_POINT_OWN stand in the point, which may then be kept and copied. More
@@ -405,10 +405,10 @@ enum {
  * get the same force, in opposite directions, so that pairs leave momentum alone. Where normal is along r they leave
  * angular momentum alone, too. Friction is Coulomb's: friction x the normal force at the step's start. It comes from
  * an elastic slip, which gxs_step_desc.pair_slips keeps: up to friction x force / stiffness, and at least
- * sticking_speed x dt, the sides stick. Not for GXS_MIDPOINT, which would gain energy, nor, so far, for models with
- * affine copies. The other side may be outside the model, as a rigid body is: then weights are 1 in sum, position is
- * that of the point at rest minus the place of the other side at the step's end, and way is how far that place has
- * gone within the step. */
+ * sticking_speed x dt, the sides stick. Not for GXS_MIDPOINT, which would gain energy. Hidden vectors of affine copies
+ * have no part in these sums. The other side may be outside the model, as a rigid body is: then weights are 1 in sum,
+ * position is that of the point at rest minus the place of the other side at the step's end, and way is how far that
+ * place has gone within the step. */
 typedef struct gxs_pair {
     gxs_point point;
     uint32_t flags;        /* GXS_PAIR_, or 0 */
@@ -434,7 +434,9 @@ typedef struct gxs_step_desc {
     uint64_t epoch;
     double mass_damping; /* Rayleigh's alpha, 1/s, 0 or more: force -alpha M v */
     uint32_t substeps;   /* GXS_EXPLICIT only: that many of dt; 0: as few as are cheap, for errors of about 1 % */
-    uint32_t newton_iterations; /* at most; 0: 1 */
+    /* at most. 0: 1; where copies are affine, in steps in time, as many as thin sheets need that are flung: until one
+     * moves affine copies by less than a hundredth of their motion in the step, 40 at most */
+    uint32_t newton_iterations;
     /* above 0: a quick step of BDF1, BDF2 or the midpoint rule, for about a third of the time of a usual one: so many
      * iterations of conjugate gradients at most (2 or 3 are enough in soft bodies) from where inertia leads, with the
      * Hessian there and the preconditioner of earlier steps. No line search, no measure of balance:
@@ -853,6 +855,13 @@ extern "C" {
 
 /* Iterations whose gain tells how far conjugate gradients are where copies are affine */
 #define GXSP_GAINS 3
+
+/* Thin sheets that are flung turn far in a step, and the first iterations stretch them. Where the caller gives no
+ * number, iterations go on until one moves affine copies by less than this share of their motion in the step; this many
+ * at most. Measured on slices of 1/15 and 1/5 of an element in steps of 17 and 33 ms: motion within 4 % of converged
+ * steps. Twice the share: 12 %. */
+#define GXSP_SETTLED     0.01
+#define GXSP_SHEETS_MOST 40
 
 /* Block-Jacobi takes less time than multigrid where inertia's mean share of the Hessian's diagonal blocks is larger
  * than this: few iterations, as the share bounds the spectrum from below. Measured on blocks of 2,000 to 8,000
@@ -1844,9 +1853,11 @@ typedef struct gxsp_problem {
     const double *given; /* the caller's displacement at the step's start, u_n */
     double start;        /* on the clock */
     gxs_scene scene;
+    double moved;       /* share of affine copies' motion in this step that the last iteration has made */
     int exact;          /* the linearisation is not projected */
     int indefinite;     /* conjugate gradients met negative curvature */
     int projected_only; /* the exact linearisation has proved indefinite in this step */
+    uint32_t added;     /* Newton iterations beside those of the step's description */
     int shortened;      /* the line search did not take the whole step */
     int damps;          /* damping adds to the load */
     int stalls;         /* consecutive iterations that noise ended and that gained next to nothing */
@@ -3779,14 +3790,16 @@ static int gxsp_is_affine(const gxs_model *model, const gxs_element *element) {
     return 0;
 }
 
-/* Is a vector one of the hidden ones of an affine copy? A translation does not move those. */
 /* Is the mass that of each copy's row, for the model or for the step at work? */
 static inline int gxsp_is_lumped(const gxsp_system *system) { return system->model.lumped_mass || system->state.quick; }
 
-static inline int gxsp_is_hidden(const gxsp_system *system, size_t copy) {
-    const uint32_t *place = system->affine.place;
-    return place && place[copy] != GXSP_NONE && (place[copy] & 3) > 0;
+/* Is a vector one of the hidden ones of an affine copy? A translation does not move those. affine: NULL: none is */
+static inline int gxsp_hides(const gxsp_affine *affine, size_t vector) {
+    const uint32_t *place = affine ? affine->place : NULL;
+    return place && place[vector] != GXSP_NONE && (place[vector] & 3) > 0;
 }
+
+static inline int gxsp_is_hidden(const gxsp_system *system, size_t copy) { return gxsp_hides(&system->affine, copy); }
 
 static inline int gxsp_is_grouped(const gxsp_system *system, size_t copy) {
     return system->affine.place && system->affine.place[copy] != GXSP_NONE;
@@ -6024,6 +6037,25 @@ static void gxsp_affine_corner_blocks(gxsp_system *system, const gxsp_affine_blo
     }
 }
 
+/* A term's share in the diagonal block of a copy, as a factor of its Hessian. The square of the weight is too little
+ * for the smoother where a term joins many copies, as those of a pair. Its sum over a row is a bound of the whole
+ * matrix. */
+static inline float gxsp_diagonal_share(const gxsp_term *term, float weight) {
+    return term->spread > 0 ? term->spread * fabsf(weight) : weight * weight;
+}
+
+/* The same for the block of a group: the sum of its weights' sizes stands for the weight of a copy. */
+static float gxsp_group_factor(const gxsp_affine *affine, const gxsp_term *term, const gxsp_share *share,
+                               uint32_t place) {
+    float sum = 0;
+    uint32_t j;
+    for (j = 0; j < term->count && term->spread > 0 && place != GXSP_NONE; j++) {
+        const uint32_t other = affine->place[share[j].copy];
+        if (other != GXSP_NONE && other / 4 == place / 4) sum += fabsf(share[j].weight);
+    }
+    return sum > 0 ? term->spread / sum : 1;
+}
+
 /* Springs and contact in the diagonal blocks of groups, and of copies that have no slot in a chunk */
 static void gxsp_affine_terms(gxsp_system *system) {
     static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
@@ -6036,15 +6068,16 @@ static void gxsp_affine_terms(gxsp_system *system) {
         const gxsp_share *share = system->lasting->share + term->first;
         for (i = 0; i < term->count; i++) {
             const uint32_t p = share[i].copy, place = affine->place[p];
+            const float factor = gxsp_group_factor(affine, term, share, place);
             for (k = 0; k < 6 && place == GXSP_NONE && system->mesh.copy_start[p] == system->mesh.copy_start[p + 1];
                  k++)
-                affine->own[p][k] += (double)(share[i].weight * share[i].weight * term->hessian[k]);
+                affine->own[p][k] += (double)(gxsp_diagonal_share(term, share[i].weight) * term->hessian[k]);
             for (j = 0; j < term->count && place != GXSP_NONE; j++) {
                 const uint32_t other = affine->place[share[j].copy];
                 if (other == GXSP_NONE || other / 4 != place / 4 || (place & 3) > (other & 3)) continue;
                 for (k = 0; k < 9; k++)
                     affine->full[place / 4][gxsp_packed_mass[place & 3][other & 3]][k] +=
-                        (double)(share[i].weight * share[j].weight * term->hessian[full[k]]);
+                        (double)(factor * share[i].weight * share[j].weight * term->hessian[full[k]]);
             }
         }
     }
@@ -7562,13 +7595,6 @@ static void gxsp_task_diagonal(void *context, size_t index) {
     }
 }
 
-/* A term's share in the diagonal block of a copy, as a factor of its Hessian. The square of the weight is too little
- * for the smoother where a term joins many copies, as those of a pair. Its sum over a row is a bound of the whole
- * matrix. */
-static inline float gxsp_diagonal_share(const gxsp_term *term, float weight) {
-    return term->spread > 0 ? term->spread * fabsf(weight) : weight * weight;
-}
-
 /* Adds springs, contact and followers to the diagonal blocks: to a copy's first slot, from which the blocks are
  * summed. */
 static void gxsp_extra_diagonal(gxsp_system *system) {
@@ -7869,39 +7895,73 @@ static void gxsp_coarse_lumped(gxsp_system *system, double rate) {
                                       9 * (size_t)gxsp_find_entry(next, fine->parent[i][p], fine->parent[i][q]));
 }
 
+/* Parents of a copy on level 1 and their weights. Returns how many. */
+static uint32_t gxsp_coarse_parents(const gxsp_system *system, uint32_t copy, uint32_t *parents, float *weights) {
+    const gxsp_level *fine = &system->multigrid.levels[0];
+    uint32_t count = 0;
+    int p;
+    if (system->affine.count > 0) return gxsp_nested_parents(system, copy, parents, weights);
+    for (p = 0; p < 4; p++)
+        if (fine->parent[copy][p] != GXSP_NONE) {
+            parents[count] = fine->parent[copy][p];
+            weights[count++] = fine->weight[copy][p];
+        }
+    return count;
+}
+
+/* The side of a pair that a vector of it is on, by the sign: hidden ones are on that of their copy. */
+static float gxsp_side_of(const gxsp_system *system, const gxsp_share *share, uint32_t count, uint32_t i) {
+    uint32_t j;
+    if (!gxsp_is_hidden(system, share[i].copy)) return share[i].weight;
+    for (j = 0; j < count; j++)
+        if (share[j].copy == system->affine.member[system->affine.place[share[i].copy] / 4][0]) return share[j].weight;
+    return 1;
+}
+
 /* What a pair's copies of one sign, or all of them (sign 0), are between coarse functions: nodes of level 1 with the
  * sums of their weights, in the order in which they are met. Returns how many. */
-static uint32_t gxsp_coarse_shares(const gxsp_level *fine, const gxsp_share *share, uint32_t count, int sign,
+static uint32_t gxsp_coarse_shares(const gxsp_system *system, const gxsp_share *share, uint32_t count, int sign,
                                    uint32_t *node, float *weight) {
-    uint32_t found = 0, i, j;
-    int p;
-    for (i = 0; i < count; i++)
-        for (p = 0; p < 4; p++) {
-            const uint32_t parent = fine->parent[share[i].copy][p];
-            const float w = share[i].weight * fine->weight[share[i].copy][p];
-            if (parent == GXSP_NONE || (sign > 0 && share[i].weight < 0) || (sign < 0 && share[i].weight > 0)) continue;
-            for (j = 0; j < found && node[j] != parent; j++) {}
-            if (j == found) node[found] = parent, weight[found++] = 0;
-            weight[j] += w;
+    uint32_t found = 0, i, j, p, parents[16], parent_count;
+    float weights[16];
+    for (i = 0; i < count; i++) {
+        const float side = sign == 0 ? 0 : gxsp_side_of(system, share, count, i);
+        if ((sign > 0 && side < 0) || (sign < 0 && side > 0)) continue;
+        parent_count = gxsp_coarse_parents(system, share[i].copy, parents, weights);
+        for (p = 0; p < parent_count; p++) {
+            for (j = 0; j < found && node[j] != parents[p]; j++) {}
+            if (j == found) node[found] = parents[p], weight[found++] = 0;
+            weight[j] += share[i].weight * weights[p];
         }
+    }
     return found;
+}
+
+/* Adds factor x a Hessian to an entry of level 1's matrix: where copies are affine, to its part in double precision. */
+static void gxsp_add_coarse(gxsp_system *system, uint32_t entry, float factor, const float *hessian) {
+    static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    int k;
+    for (k = 0; k < 9; k++)
+        if (system->affine.count > 0)
+            system->affine.block[9 * (size_t)entry + (size_t)k] += (double)factor * (double)hessian[full[k]];
+        else
+            system->multigrid.levels[1].block[9 * (size_t)entry + (size_t)k] += factor * hessian[full[k]];
 }
 
 /* Adds factor x the outer product of weights times a Hessian to level 1's matrix, if that has all the entries it
  * needs. Returns whether it has. */
-static int gxsp_add_outer(gxsp_level *level, const uint32_t *node, const float *weight, uint32_t count, float factor,
+static int gxsp_add_outer(gxsp_system *system, const uint32_t *node, const float *weight, uint32_t count, float factor,
                           const float *hessian) {
-    static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    const gxsp_level *level = &system->multigrid.levels[1];
     uint32_t i, j, entry;
-    int k, adds;
+    int adds;
     for (adds = 0; adds < 2; adds++)
         for (i = 0; i < count; i++)
             for (j = 0; j < count; j++) {
                 if (node[i] > node[j]) continue;
                 entry = gxsp_find_entry(level, node[i], node[j]);
                 if (level->column[entry] != node[j]) return 0;
-                for (k = 0; k < 9 && adds; k++)
-                    level->block[9 * (size_t)entry + (size_t)k] += factor * weight[i] * weight[j] * hessian[full[k]];
+                if (adds) gxsp_add_coarse(system, entry, factor * weight[i] * weight[j], hessian);
             }
     return 1;
 }
@@ -7910,24 +7970,20 @@ static int gxsp_add_outer(gxsp_level *level, const uint32_t *node, const float *
  * it has none between the two sides, twice each side's: (a - b)^2 <= 2 a^2 + 2 b^2; or, where it has not even those, a
  * diagonal that bounds them: (sum w_i x_i)^2 <= sum |w_j| sum |w_i| x_i^2. */
 static void gxsp_coarse_pair(gxsp_system *system, const gxsp_term *term) {
-    static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-    const gxsp_level *fine = &system->multigrid.levels[0];
     const gxsp_share *share = system->lasting->share + term->first;
-    gxsp_level *next = &system->multigrid.levels[1];
-    uint32_t node[4 * GXS_POINT_MOST], count, i;
-    float weight[4 * GXS_POINT_MOST];
-    int sign, k;
-    count = gxsp_coarse_shares(fine, share, term->count, 0, node, weight);
-    if (gxsp_add_outer(next, node, weight, count, 1, term->hessian)) return;
+    uint32_t node[16 * GXS_POINT_MOST], count, i;
+    float weight[16 * GXS_POINT_MOST];
+    int sign;
+    count = gxsp_coarse_shares(system, share, term->count, 0, node, weight);
+    if (gxsp_add_outer(system, node, weight, count, 1, term->hessian)) return;
     for (sign = -1; sign <= 1; sign += 2) {
         float spread = 0;
-        count = gxsp_coarse_shares(fine, share, term->count, sign, node, weight);
-        if (gxsp_add_outer(next, node, weight, count, 2, term->hessian)) continue;
+        count = gxsp_coarse_shares(system, share, term->count, sign, node, weight);
+        if (gxsp_add_outer(system, node, weight, count, 2, term->hessian)) continue;
         for (i = 0; i < count; i++) spread += fabsf(weight[i]);
         for (i = 0; i < count; i++)
-            for (k = 0; k < 9; k++)
-                next->block[9 * (size_t)gxsp_find_entry(next, node[i], node[i]) + (size_t)k] +=
-                    2 * spread * fabsf(weight[i]) * term->hessian[full[k]];
+            gxsp_add_coarse(system, gxsp_find_entry(&system->multigrid.levels[1], node[i], node[i]),
+                            2 * spread * fabsf(weight[i]), term->hessian);
     }
 }
 
@@ -8009,6 +8065,10 @@ static void gxsp_nested_term(gxsp_system *system, const gxsp_term *term) {
     uint32_t i, j, p, q, rows[16], columns[16], row_count, column_count;
     float w[16], v[16];
     int k;
+    if (term->spread > 0) {
+        gxsp_coarse_pair(system, term);
+        return;
+    }
     for (i = 0; i < term->count; i++)
         for (j = 0; j < term->count; j++) {
             row_count = gxsp_nested_parents(system, share[i].copy, rows, w);
@@ -8044,7 +8104,9 @@ static double gxsp_double_dot(const double *a, const double *b, size_t count) {
 }
 
 /* The sum of both matrices in the factor's envelope, then Cholesky; the diagonal is inverted. Functions that others
- * make up have pivots of rounding: they are left out. place: n, scratch. 0: a number overflowed. */
+ * make up have pivots of rounding. 2e-8 of the diagonal is added, which hardly stiffens what bends. With 1e-12 an
+ * answer had multiples of them, and the rounding of their products became a force: sheets that nothing holds took
+ * hundreds of iterations in place of six, under pairs even with 4e-9. place: n, scratch. 0: a number overflowed. */
 static int gxsp_nested_factor(gxsp_system *system, uint32_t *place) {
     const gxsp_factor *factor = &system->multigrid.factor;
     const gxsp_level *level = &system->multigrid.levels[1];
@@ -8068,7 +8130,7 @@ static int gxsp_nested_factor(gxsp_system *system, uint32_t *place) {
             const double *left = gxsp_nested_row(system, j);
             row[j] = (row[j] - gxsp_double_dot(row + from, left + from, j - from)) * left[j];
         }
-        row[i] = own * (1 + 1e-12) - gxsp_double_dot(row + first, row + first, i - first);
+        row[i] = own * (1 + 2e-8) - gxsp_double_dot(row + first, row + first, i - first);
         row[i] = own < GXSP_TINY ? 0 : row[i] > 1e-10 * own ? 1 / sqrt(row[i]) : 0;
         if (!gxsp_finite(row[i])) return 0;
     }
@@ -10022,17 +10084,18 @@ static double gxsp_pair_rounding(const gxs_point *point, const double *displacem
 }
 
 /* Weights of a pair in single precision that are exactly 0 in sum, so that translations meet no stiffness: multiples of
- * a power of two. The largest one takes the rest. */
-static void gxsp_balance_shares(gxsp_share *share, const double *weights, uint32_t count) {
+ * a power of two. The largest one takes the rest. Hidden vectors have no part in that. */
+static void gxsp_balance_shares(const gxsp_system *system, gxsp_share *share, const double *weights, uint32_t count) {
     double largest = 0, unit, sum = 0;
     uint32_t k, at = 0;
     int exponent;
     for (k = 0; k < count; k++)
-        if (fabs(weights[k]) > largest) largest = fabs(weights[k]), at = k;
+        if (!gxsp_is_hidden(system, share[k].copy) && fabs(weights[k]) > largest) largest = fabs(weights[k]), at = k;
     (void)frexp(largest, &exponent);
     unit = ldexp(1, exponent > -100 ? exponent - 23 : -123);
     for (k = 0; k < count; k++) {
         const double rounded = floor(weights[k] / unit + 0.5);
+        if (gxsp_is_hidden(system, share[k].copy)) continue;
         share[k].weight = (float)(rounded * unit);
         sum += rounded;
     }
@@ -10076,6 +10139,7 @@ static void gxsp_balance_islands(const gxsp_problem *problem) {
         double load[3];
         if (!island) continue;
         gxsp_load(problem, i, load);
+        if (gxsp_is_hidden(system, i)) memset(load, 0, sizeof load); /* a translation does no work there */
         for (r = 0; r < 3; r++)
             island->sum[r] += load[r] - problem->rate * system->model.lumped[i] *
                                             (direction[3 * i + r] + system->vectors.current[3 * i + r] -
@@ -10086,7 +10150,7 @@ static void gxsp_balance_islands(const gxsp_problem *problem) {
             system->model.components[p].sum[r] /= problem->rate * system->model.components[p].island;
     for (i = 0; i < system->model.n; i++) {
         const gxsp_component *island = gxsp_island_of(system, i);
-        for (r = 0; r < 3 && island; r++) direction[3 * i + r] += island->sum[r];
+        for (r = 0; r < 3 && island && !gxsp_is_hidden(system, i); r++) direction[3 * i + r] += island->sum[r];
     }
 }
 
@@ -10248,7 +10312,7 @@ static void gxsp_terms_make(const gxsp_problem *problem, const double *displacem
         if (next > problem->step->spring_count + problem->step->point_count &&
             !(problem->step->pairs[next - 1 - problem->step->spring_count - problem->step->point_count].flags &
               GXS_PAIR_OUTSIDE)) {
-            gxsp_balance_shares(lasting->share + term->first, gxsp_weights(point), point->count);
+            gxsp_balance_shares(problem->system, lasting->share + term->first, gxsp_weights(point), point->count);
             for (n = 0; n < point->count; n++) term->spread += fabsf(lasting->share[term->first + n].weight);
         }
         for (k = 0; k < 6; k++) term->hessian[k] = (float)(problem->system->model.scale * pull.hessian[k]);
@@ -11164,6 +11228,38 @@ static size_t gxsp_end_search(gxsp_system *system, size_t *left) {
     return down;
 }
 
+/* Does Newton's method go on until affine copies have settled? */
+static int gxsp_settles(const gxsp_problem *problem) {
+    return problem->system->affine.count > 0 && problem->step->newton_iterations == 0 &&
+           problem->step->integrator != GXS_STATIC;
+}
+
+/* Motion of affine copies from the memory of `before` to current, as a share of that since the step's start: root of
+ * the mean square by mass; the largest of all components. 0: none of them has moved. */
+static double gxsp_share_moved(const gxsp_problem *problem, const double *before) {
+    const gxsp_system *system = problem->system;
+    double share = 0;
+    uint32_t g, p;
+    int k;
+    for (p = 0; p < system->model.component_count; p++)
+        system->model.components[p].sum[0] = system->model.components[p].sum[1] = 0;
+    for (g = 0; g < system->affine.group_count; g++) {
+        const size_t copy = system->affine.member[g][0];
+        double *sum = gxsp_lead_of(system, copy)->sum;
+        for (k = 0; k < 3; k++) {
+            const double last = system->vectors.current[3 * copy + (size_t)k] - before[3 * copy + (size_t)k],
+                         all = system->vectors.current[3 * copy + (size_t)k] - problem->given[3 * copy + (size_t)k];
+            sum[0] += system->model.lumped[copy] * last * last;
+            sum[1] += system->model.lumped[copy] * all * all;
+        }
+    }
+    for (p = 0; p < system->model.component_count; p++) {
+        const double *sum = system->model.components[p].sum;
+        if (sum[1] > 0) share = fmax(share, sqrt(sum[0] / sum[1]));
+    }
+    return share;
+}
+
 /* A step length for each component along the direction, by backtracking on E. E is a sum over components: it falls
  * in each of them, and none waits for another. current becomes the point found, with its forces and energies. 0: no
  * finite point of lower energy was found. */
@@ -11191,6 +11287,7 @@ static int gxsp_line_search(gxsp_problem *problem) {
     gxsp_keep_energies(problem);
     system->vectors.residual = system->vectors.current;
     system->vectors.current = found;
+    if (gxsp_settles(problem)) problem->moved = gxsp_share_moved(problem, system->vectors.residual);
     return left == 0 || down > 0;
 }
 
@@ -11323,7 +11420,10 @@ static int gxsp_find_direction(gxsp_problem *problem) {
 /* Does Newton's method continue? If not, report.stop says why. before: the residual an iteration ago */
 static int gxsp_continues(gxsp_problem *problem, double before) {
     const gxs_step_desc *step = problem->step;
-    const uint32_t budget = step->newton_iterations ? step->newton_iterations : 1,
+    const uint32_t budget = (step->newton_iterations ? step->newton_iterations
+                             : gxsp_settles(problem) ? GXSP_SHEETS_MOST
+                                                     : 1) +
+                            problem->added,
                    done = problem->report.newton_iterations;
     const double wanted = step->newton_tolerance > 0 ? step->newton_tolerance : 1e-8,
                  goal = wanted > GXSP_ROUNDING ? wanted : GXSP_ROUNDING;
@@ -11336,6 +11436,7 @@ static int gxsp_continues(gxsp_problem *problem, double before) {
     if (problem->stalls > GXSP_STALLS) return 0;
     problem->report.stop = GXS_STOP_ITERATIONS;
     if (gxsp_out_of_time(problem) || done == budget) return 0;
+    if (done > 0 && gxsp_settles(problem) && problem->moved <= GXSP_SETTLED) return 0;
     problem->exact =
         done > 0 && !problem->projected_only && !problem->shortened && residual < 0.1 && residual > 0.1 * before;
     return 1;
@@ -11469,8 +11570,11 @@ static gx_result gxsp_minimise(gxsp_problem *problem) {
     gxsp_limit_energies(problem, gxsp_trial(system), 1);
     if (system->state.base_known && problem->step->integrator != GXS_MIDPOINT && gxsp_count_risen(system) == 0)
         return GX_OK; /* lower than base even without the kinetic energy that staying there would take */
-    if (gxsp_bring_down(problem) > 0) result = gxsp_newton(problem);
-    return result;
+    if (gxsp_bring_down(problem) == 0) return GX_OK;
+    /* Under pairs one iteration from where inertia leads often ends above base, as friction sticks there. Without
+     * another one, from base, whole piles would stand still for a step. */
+    problem->added = problem->step->pair_count > 0;
+    return gxsp_newton(problem);
 }
 
 /* >>midpoint: the second half of the midpoint rule, and the end of a step ------------------------------------------ */
@@ -12687,8 +12791,10 @@ static gx_result gxsp_check_plane(const gxs_plane *plane, size_t index, gx_failu
              : GX_OK;
 }
 
-/* A pair of a step. Weights are 0 in sum, or 1, up to the rounding of those who made them. */
-static gx_result gxsp_check_pair(const gxs_step_desc *step, size_t index, size_t n, gx_failure *failure) {
+/* A pair of a step. Weights are 0 in sum, or 1, up to the rounding of those who made them. affine: of the model whose
+ * vectors it names, or NULL */
+static gx_result gxsp_check_pair(const gxs_step_desc *step, size_t index, size_t n, const gxsp_affine *affine,
+                                 gx_failure *failure) {
     static const char *const names[6] = {"pairs.point.count",  "pairs.point.copy",    "pairs.point.weight",
                                          "pairs.point.copies", "pairs.point.weights", "pairs.point.position"};
     const gxs_pair *pair = &step->pairs[index];
@@ -12706,7 +12812,7 @@ static gx_result gxsp_check_pair(const gxs_step_desc *step, size_t index, size_t
         (result = gxsp_check_size(pair->sticking_speed, "pairs.sticking_speed", index, failure)) != GX_OK)
         return result;
     for (k = 0; k < pair->point.count; k++) {
-        sum += gxsp_weights(&pair->point)[k];
+        sum += gxsp_hides(affine, gxsp_copies(&pair->point)[k]) ? 0 : gxsp_weights(&pair->point)[k];
         size += fabs(gxsp_weights(&pair->point)[k]);
     }
     if (size > 1e30) return gxsp_fail(failure, GX_ERROR_RANGE, names[pair->point.copies ? 4 : 2], index);
@@ -12717,8 +12823,9 @@ static gx_result gxsp_check_pair(const gxs_step_desc *step, size_t index, size_t
     return step->pair_slips ? gxsp_check_finite(step->pair_slips + 3 * index, 3, "pair_slips", index, failure) : GX_OK;
 }
 
-/* Springs, contact points, planes and pairs of a step */
-static gx_result gxsp_check_points(const gxs_step_desc *step, size_t n, gx_failure *failure) {
+/* Springs, contact points, planes and pairs of a step. affine: see gxsp_check_pair */
+static gx_result gxsp_check_points(const gxs_step_desc *step, size_t n, const gxsp_affine *affine,
+                                   gx_failure *failure) {
     static const char *const of_springs[6] = {"springs.point.count",   "springs.point.copy",
                                               "springs.point.weight",  "springs.point.copies",
                                               "springs.point.weights", "springs.point.position"};
@@ -12735,18 +12842,22 @@ static gx_result gxsp_check_points(const gxs_step_desc *step, size_t n, gx_failu
     for (i = 0; i < step->point_count && result == GX_OK; i++)
         result = gxsp_check_point(&step->points[i], n, of_points, i, failure);
     for (i = 0; i < step->plane_count && result == GX_OK; i++) result = gxsp_check_plane(&step->planes[i], i, failure);
-    for (i = 0; i < step->pair_count && result == GX_OK; i++) result = gxsp_check_pair(step, i, n, failure);
+    for (i = 0; i < step->pair_count && result == GX_OK; i++) result = gxsp_check_pair(step, i, n, affine, failure);
     return result;
+}
+
+static gx_result gxsp_check_all(const gxs_step_desc *step, size_t n, uint64_t epoch, const gxsp_affine *affine,
+                                gx_failure *failure) {
+    gx_result result = gxsp_check_step(step, failure);
+    if (result == GX_OK) result = gxsp_check_epochs(step, epoch, failure);
+    return result == GX_OK ? gxsp_check_points(step, n, affine, failure) : result;
 }
 
 GXFEM_API gx_result gxs_step_check(const gxs_step_desc *step, size_t copy_count, uint64_t epoch, gx_failure *failure) {
     gx_failure ignored;
-    gx_result result;
     if (failure == NULL) failure = &ignored;
     gxsp_end(failure, GX_OK);
-    result = gxsp_check_step(step, failure);
-    if (result == GX_OK) result = gxsp_check_epochs(step, epoch, failure);
-    return result == GX_OK ? gxsp_check_points(step, copy_count, failure) : result;
+    return gxsp_check_all(step, copy_count, epoch, NULL, failure);
 }
 
 /* Every array that a step reads */
@@ -13175,7 +13286,7 @@ static gx_result gxsp_take_parts(gxs_solver *solver, const gxs_step_desc *step, 
     part.integrator = plan->integrator;
     part.substeps = plan->substeps;
     part.cg_tolerance = plan->cg_tolerance;
-    part.newton_iterations = 1;
+    part.newton_iterations = solver->system->affine.count > 0 ? 0 : 1;
     parts->seconds = way * step->dt / plan->parts;
     part.newton_tolerance = 0;
     if (step->targets) part.targets = parts->target;
@@ -13457,10 +13568,9 @@ GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *ste
     if (!solver) return gxsp_refuse(failure, "solver");
     if (!solver->system) return gxsp_fail(failure, GX_ERROR_SEQUENCE, "gxs_solver_set_model", SIZE_MAX);
     n = solver->system->model.n;
-    if ((result = gxs_step_check(step, n, solver->system->model.epoch, failure)) != GX_OK ||
+    if ((result = gxsp_check_all(step, n, solver->system->model.epoch, &solver->system->affine, failure)) != GX_OK ||
         (result = gxsp_check_vectors(step, n, displacement, velocity, solver->system->model.held, failure)) != GX_OK)
         return result;
-    if (step->pair_count > 0 && solver->system->affine.count > 0) return gxsp_refuse(failure, "pairs");
     result = (step->quality > 0 ? gxsp_step_by_quality : gxsp_step_once)(solver, step, displacement, velocity, &own,
                                                                          failure);
     if (result == GX_OK && report) *report = own;
@@ -13653,6 +13763,8 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_NESTED_COST
 #undef GXSP_NESTED_FROM
 #undef GXSP_GAINS
+#undef GXSP_SETTLED
+#undef GXSP_SHEETS_MOST
 #undef GXSP_WIDEST
 #undef GXSP_SHIFT
 #undef GXSP_STIFFNESS

@@ -12,7 +12,7 @@ mkdir -p "$charts" || exit 2
 # where BENCH: when its table was made, and on what
 where() { echo "$(date -r "$tables/$1.csv" +%Y-%m-%d), $(uname -m | tr _ -), one thread"; }
 
-for bench in quadrature conditioning stepping front space scaling blade open; do
+for bench in quadrature conditioning stepping front space thin scaling blade open; do
     [ -s "$tables/$bench.csv" ] || { echo "$0: $tables/$bench.csv is missing: make bench-$bench" >&2; exit 2; }
 done
 
@@ -316,6 +316,33 @@ unset multiplot
 END
 }
 
+# thin_rows BLOCK COLUMNS TEST: rows of thin.csv for which a test of awk holds, as a gnuplot data block
+thin_rows() {
+    echo "\$$1 << EOD"
+    awk -F, 'NR > 1 && ('"$3"') { print '"$2"' }' "$tables/thin.csv"
+    echo "EOD"
+}
+
+# How far slices bend with affine copies and without, by their thickness; the time to an error
+thin() {
+    echo 'set terminal svg size 1180,480 font "sans,12" background "white"'
+    echo "set output '$charts/thin.svg'"
+    for nu in 0.3 0.4; do thin_rows bends_${nu#0.} '$3, 100 * $5, 100 * $6, 100 * $7' "\$1 == \"placement\" && \$4 == $nu"; done
+    thin_rows affine '$6, $5' '$1 == "cost" && $2 ~ /^affine/'
+    thin_rows linear '$6, $5' '$1 == "cost" && $2 ~ /^linear x/'
+    thin_rows meshed '$6, $5' '$1 == "cost" && $2 ~ /meshed/'
+    cat <<END
+$styles
+set multiplot layout 1,2 title "Slices within one layer of elements, at rest   ($(where thin))" font "sans,15"
+set logscale xy; set grid back lc rgb "#dddddd"; set key bottom right samplen 1.5
+set xlabel "thickness of the slice, elements"; set ylabel "drop of its end, % of elements of high order"; set xrange [0.015:1.5]; set yrange [0.01:200]
+plot \$bends_3 using 1:2 with linespoints ls 1 title "affine copies, Poisson's ratio 0.3, worst placement", \$bends_3 using 1:3 with lines ls 8 title "best placement", \$bends_4 using 1:2 with linespoints ls 2 title "0.4, worst placement", \$bends_3 using 1:4 with linespoints ls 3 title "linear elements, 0.3", 100 with lines ls 7 notitle
+set xlabel "one balance, ms"; set ylabel "error of the drop"; set xrange [*:*]; set yrange [1e-3:2]; set format y "10^{%L}"; set key bottom left
+plot \$affine using 1:2 with linespoints ls 1 title "cut, affine copies", \$linear using 1:2 with linespoints ls 3 title "cut, linear elements, refined", \$meshed using 1:2 with linespoints ls 5 title "slice meshed on its own, linear elements"
+unset multiplot
+END
+}
+
 # How far the walls of a blade's cut are off known sheets, over tolerances: by these, and by the time for each divided element
 blade() {
     echo 'set terminal svg size 1180,480 font "sans,12" background "white"'
@@ -364,5 +391,5 @@ unset multiplot
 END
 }
 
-panels | gnuplot && triangles | gnuplot && conditioning | gnuplot && stepping | gnuplot && stepping_cuts | gnuplot && front | gnuplot && space | gnuplot && scaling | gnuplot && blade | gnuplot && open | gnuplot || exit 1
-echo "wrote $charts/quadrature.svg, quadrature_triangles.svg, conditioning.svg, stepping.svg, stepping_cuts.svg, front.svg, space.svg, scaling.svg, blade.svg, open.svg"
+panels | gnuplot && triangles | gnuplot && conditioning | gnuplot && stepping | gnuplot && stepping_cuts | gnuplot && front | gnuplot && space | gnuplot && thin | gnuplot && scaling | gnuplot && blade | gnuplot && open | gnuplot || exit 1
+echo "wrote $charts/quadrature.svg, quadrature_triangles.svg, conditioning.svg, stepping.svg, stepping_cuts.svg, front.svg, space.svg, thin.svg, scaling.svg, blade.svg, open.svg"

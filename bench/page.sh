@@ -9,7 +9,7 @@ tables=$1
 page=$2
 readme=$3
 
-for bench in quadrature stepping front conditioning failure table2 table2_ratios scaling kernel open smallest solver product violent accuracy drift frames skin blade strokes; do
+for bench in quadrature stepping front conditioning failure table2 table2_ratios scaling kernel open smallest solver product violent accuracy drift frames skin blade strokes thin; do
     [ -s "$tables/$bench.csv" ] || { echo "$0: $tables/$bench.csv is missing: make bench-$(echo $bench | sed 's/_ratios//; s/product/solver/')" >&2; exit 2; }
 done
 for name in why speed; do
@@ -374,6 +374,47 @@ $(awk -F, '$1 == "frame" { print $3; exit }' "$tables/blade.csv") elements that 
     blade_rows carve '$2 " | " $3 " | " $9 " | " $11 " | " $16 " | " $18 " | " ($22 == "" ? 0 : $22)'
 }
 
+# Rows of thin.csv of one series; EXPRESSION: of awk
+thin_rows() {
+    awk -F, -v series="$1" '$1 == series { print "| " '"$2"' " |" }' "$tables/thin.csv"
+}
+
+# What thin.csv has for one case of a series: COLUMN by number
+thin_value() { awk -F, -v series="$1" -v of="$2" -v column="$3" '$1 == series && $2 == of { printf("%.3g", $column); exit }' "$tables/thin.csv"; }
+
+thin() {
+    heading "t, cubes" "Poisson's ratio" "least of all placements" largest "without affine copies" aim
+    thin_rows placement '$3 " | " $4 " | " $5 " | " $6 " | " $7 " | " $8'
+    echo
+    text "t = 0.1 in other meshes, and the slices of slab_in_five, all in one layer; Poisson's ratio 0.3."
+    echo
+    heading "mesh or slice" "t, cubes" "drop" "without affine copies" aim
+    thin_rows mesh '$2 " | " $3 " | " $5 " | " $7 " | " $8'
+    thin_rows slices '$2 " | " $3 " | " $5 " | " $7 " | " $8'
+    echo
+    text "Poisson's ratio 0, t = 0.1: the first frequency is $(thin_value frequency "over beam theory's" 5) of beam theory's. Large drops, as \
+shares of the length: $(thin_value large "load 1.8198" 5) and $(thin_value large "load 10.903" 5); of an inextensible rod \
+$(thin_value large "load 1.8198" 7) and $(thin_value large "load 10.903" 7)."
+    echo
+    text "Iterations of conjugate gradients to 1e-2: at balance, without inertia; in steps of slab_in_five, 61 x 11 cubes."
+    echo
+    heading "" "t, cubes" iterations aim
+    thin_rows balance '"balance | " $3 " | " $5 " | " $8'
+    thin_rows motion '"motion | " $3 " | " $5 " | " $8'
+    echo
+    text "The time to an error: a slice of 8 x 2 cubes, t = 0.2, from rest to balance in two iterations of Newton's method to 1e-2; linear: \
+the same cut in meshes refined so many times, or layers of cubes through a slice that is meshed on its own."
+    echo
+    heading "elements, refinement" unknowns error ms
+    thin_rows cost '$2 " | " $7 " | " $5 " | " $6'
+    echo
+    text "Newton's method in steps of slab_in_five: slices 30 cubes long are let go. Error: distance of the tip from that of converged \
+steps, root of the mean square over the run, over the largest displacement. default: newton_iterations 0, and what it takes on average."
+    echo
+    heading "t, cubes" "iterations in a step of" error "ms a step" "ms, converged"
+    thin_rows newton '$3 " | " $2 " | " $5 " | " $6 " | " $7'
+}
+
 # A paragraph
 text() { echo "$*" | fold -s -w 119 | sed 's/ *$//'; }
 
@@ -417,6 +458,15 @@ slice as thick as a quarter of an element bends 3 to 5 % as far as it should, as
 conforming mesh of one layer 35 %, of four layers 90 %."
     echo
     echo "![drops of slices and folds under refinement](charts/space.svg)"
+    echo
+    echo "### Slices thinner than their elements"
+    echo
+    text "With affine copies (\`gx_body_desc.affine_below\`) such slices bend. Drops of clamped plates of 15 x 4 cubes, cut at any place \
+within one layer, as shares of those by elements of high order (\`bench/plate.h\`)."
+    echo
+    thin
+    echo
+    echo "![drops with affine copies and without, and the time to an error](charts/thin.svg)"
     echo
     echo "### Beside local solvers"
     echo
@@ -553,7 +603,7 @@ compile it, and its size, stripped."
     echo
     text "Linear elements converge with the order 1.9 to 2 against beam theory and twisted columns (1.5 to 1.75 where the finest mesh \
 is still coarse), 1.8 (plane stress) and 1.5 (plane strain) on Cook's membrane, whose corner is singular. Nearly incompressible \
-they lock."
+they lock. Volumes averaged over the cells of a node (\`bench/averaged.h\`) are a trial that is not in the library."
     echo
     accuracy
     echo
@@ -570,13 +620,15 @@ judges."
     echo
     echo "| file in \`bench/\` | what it is |"
     echo "| --- | --- |"
-    echo "| \`quadrature.c\`, \`stepping.c\`, \`space.c\`, \`front.c\`, \`table2.c\`, \`conditioning.c\`, \`failure.c\`, \`scaling.c\`, \`solver.c\`, \`violent.c\`, \`kernel.c\`, \`open.c\`, \`smallest.sh\`, \`accuracy.c\`, \`drift.c\`, \`frames.c\`, \`skin.c\`, \`blade.c\`, \`strokes.c\` | the sections above, in this order but for Booleans |"
+    echo "| \`quadrature.c\`, \`stepping.c\`, \`space.c\`, \`thin.c\`, \`front.c\`, \`table2.c\`, \`conditioning.c\`, \`failure.c\`, \`scaling.c\`, \`solver.c\`, \`violent.c\`, \`kernel.c\`, \`open.c\`, \`smallest.sh\`, \`accuracy.c\`, \`drift.c\`, \`frames.c\`, \`skin.c\`, \`blade.c\`, \`strokes.c\` | the sections above, in this order but for Booleans |"
     echo "| \`soak.c\` | 100,000 steps of bodies that are cut, kicked and dropped: no copy may run away |"
     echo "| \`rxfem.h\`, \`rxfem_rules.h\`, \`rxfem_model.h\` | RXFEM (Koschier, Bender, Thuerey 2017), written for the bench |"
     echo "| \`vna.h\`, \`literal.h\` | virtual nodes (element duplication); GXFEM's Algorithm 1 as published, a Boolean for each subdomain |"
     echo "| \`local.h\` | XPBD and VBD |
 | \`sampling.h\`, \`parts.h\` | integrals by points; element deletion |"
     echo "| \`open.sh\`, \`open_cgal.cc\`, \`open_manifold.cc\`, \`open_manifold.mjs\` | CGAL and manifold as runners of the Open Boolean Benchmark |"
+    echo "| \`averaged.h\` | volumes averaged over the cells of a node, a trial |"
+    echo "| \`plate.h\` | clamped plates by elements of high order |"
     echo "| \`hard.h\`, \`least.h\` | the hard cases; the least number of unknowns |"
     echo "| \`charts.sh\`, \`page.sh\` | charts; this page and two parts of the README |"
 } >"$page" || exit 2

@@ -415,6 +415,27 @@ START_TEST(free_sheets_keep_their_momentum) {
 }
 END_TEST
 
+/* Sheets that nothing holds take few iterations, too, step after step: some motions have several descriptions by
+   affine copies, and none of these may grow. */
+START_TEST(free_sheets_take_few_iterations) {
+    static const double steps[3] = {0.002, 0.01, 0.05};
+    sheet made = sheet_make(6, 4, 0.37, 0.2, 0, _i % 2 ? GXS_STABLE_NEO_HOOKEAN : GXS_LINEAR);
+    gxs_solver *solver = solver_of(&made);
+    gxs_step_desc step = step_make(steps[_i / 2], 0);
+    gxs_step_report report;
+    size_t i;
+    int round;
+    for (i = 0; i < made.nodes; i++) made.s.velocity[3 * i + 2] = 0.3 * sin(1.5 * made.s.rest[3 * i]);
+    for (round = 0; round < 20; round++) {
+        ck_assert_int_eq(gxs_solver_step(solver, &step, made.s.displacement, made.s.velocity, &report, NULL), GX_OK);
+        assert_that(report.preconditioner == GXS_MULTIGRID && report.cg_iterations <= 15, "%u iterations",
+                    report.cg_iterations);
+    }
+    gxs_solver_destroy(solver);
+    sheet_free(&made);
+}
+END_TEST
+
 /* Without an affine copy, an array that says so changes no bit. */
 START_TEST(none_is_none) {
     int given;
@@ -555,6 +576,217 @@ START_TEST(springs_pull_at_sheets) {
 }
 END_TEST
 
+/* ---- pairs ---- */
+
+enum { SIDE = 16, SPAN = 2 * SIDE }; /* vectors of a side: four copies and their hidden ones */
+
+/* Two equal sheets, one above the other, and pairs between them: one for each element and the same of the other sheet
+ */
+typedef struct sandwich {
+    gxs_model model;
+    double *rest, *displacement, *velocity, *weights, *slips;
+    gxs_element *elements;
+    uint32_t *affine, *copies;
+    uint8_t *held;
+    gxs_pair *pairs;
+    size_t plain; /* copies of both */
+} sandwich;
+
+/* The point of an element at a height, in the sheet's own coordinates: all that moves it, times sign. Returns its
+ * place. */
+static void side_of(const sandwich *two, const gxs_element *element, double height, double sign, uint32_t *copies,
+                    double *weights, double *place) {
+    double part[4];
+    int k, r, above = 0;
+    memset(place, 0, 3 * sizeof *place);
+    for (k = 0; k < 4; k++) above += fmod(two->rest[3 * element->copy[k] + 2], 10) > 0.5;
+    for (k = 0; k < 4; k++) {
+        const double *x = two->rest + 3 * element->copy[k];
+        part[k] = fmod(x[2], 10) > 0.5 ? height / above : (1 - height) / (4 - above);
+        for (r = 0; r < 3; r++) place[r] += part[k] * x[r];
+    }
+    for (k = 0; k < 4; k++) {
+        copies[4 * k] = element->copy[k];
+        weights[4 * k] = sign * part[k];
+        for (r = 0; r < 3; r++) {
+            copies[4 * k + 1 + r] = two->affine[element->copy[k]] + (uint32_t)r;
+            weights[4 * k + 1 + r] = sign * part[k] * (place[r] - two->rest[3 * element->copy[k] + (size_t)r]);
+        }
+    }
+}
+
+/* Sheets of z0 to z0 + t; the second one's coordinates are 10 higher, and it touches the first. */
+static sandwich sandwich_make(int nx, int ny, double z0, double t, double stiffness, double friction) {
+    sheet one = sheet_make(nx, ny, z0, t, 0, GXS_STABLE_NEO_HOOKEAN);
+    const size_t half = one.nodes, elements = one.s.model.element_count, n = 8 * half;
+    sandwich two;
+    size_t i, e;
+    int k;
+    memset(&two, 0, sizeof two);
+    two.plain = 2 * half;
+    two.rest = (double *)zeroed(3 * n, sizeof(double));
+    two.displacement = (double *)zeroed(3 * n, sizeof(double));
+    two.velocity = (double *)zeroed(3 * n, sizeof(double));
+    two.held = (uint8_t *)zeroed(n, 1);
+    two.affine = (uint32_t *)zeroed(n, sizeof(uint32_t));
+    two.elements = (gxs_element *)zeroed(2 * elements, sizeof *two.elements);
+    two.pairs = (gxs_pair *)zeroed(elements, sizeof *two.pairs);
+    two.copies = (uint32_t *)zeroed(SPAN * elements, sizeof(uint32_t));
+    two.weights = (double *)zeroed(SPAN * elements, sizeof(double));
+    two.slips = (double *)zeroed(3 * elements, sizeof(double));
+    memset(two.affine, 0xff, n * sizeof(uint32_t));
+    for (i = 0; i < 2 * half; i++) {
+        two.affine[i] = (uint32_t)(2 * half + 3 * i);
+        memcpy(two.rest + 3 * i, one.s.rest + 3 * (i % half), 3 * sizeof(double));
+        two.rest[3 * i + 2] += i < half ? 0 : 10;
+    }
+    for (e = 0; e < 2 * elements; e++) {
+        two.elements[e] = one.s.elements[e % elements];
+        for (k = 0; k < 4 && e >= elements; k++) two.elements[e].copy[k] += (uint32_t)half;
+    }
+    for (e = 0; e < elements; e++) {
+        gxs_pair *pair = &two.pairs[e];
+        double above[3], below[3];
+        side_of(&two, &two.elements[elements + e], z0, 1, two.copies + SPAN * e, two.weights + SPAN * e, above);
+        side_of(&two, &two.elements[e], z0 + t, -1, two.copies + SPAN * e + SIDE, two.weights + SPAN * e + SIDE, below);
+        pair->point.count = SPAN;
+        pair->point.copies = two.copies + SPAN * e;
+        pair->point.weights = two.weights + SPAN * e;
+        for (k = 0; k < 2; k++) pair->point.position[k] = above[k] - below[k];
+        pair->normal[2] = 1; /* position: they touch */
+        pair->stiffness = stiffness / 6;
+        pair->friction = friction;
+    }
+    two.model = one.s.model;
+    two.model.materials = (gxs_material *)zeroed(1, sizeof(gxs_material));
+    *(gxs_material *)two.model.materials = *one.s.material;
+    two.model.copy_count = n;
+    two.model.positions = two.rest;
+    two.model.elements = two.elements;
+    two.model.element_count = 2 * elements;
+    two.model.held = two.held;
+    two.model.affine = two.affine;
+    sheet_free(&one);
+    return two;
+}
+
+static void sandwich_free(sandwich *two) {
+    free((void *)two->model.materials);
+    free(two->rest);
+    free(two->displacement);
+    free(two->velocity);
+    free(two->held);
+    free(two->affine);
+    free(two->elements);
+    free(two->pairs);
+    free(two->copies);
+    free(two->weights);
+    free(two->slips);
+}
+
+/* The deepest overlap of the pairs, m */
+static double overlap_of(const sandwich *two, const gxs_step_desc *step) {
+    double most = 0;
+    size_t i;
+    uint32_t k;
+    for (i = 0; i < step->pair_count; i++) {
+        double z = 0;
+        for (k = 0; k < SPAN; k++)
+            z += two->weights[SPAN * i + k] * two->displacement[3 * (size_t)two->copies[SPAN * i + k] + 2];
+        most = fmax(most, -z);
+    }
+    return most;
+}
+
+/* A sheet falls flat or tilted onto another in free fall: they part again, momentum is kept, no energy is won. */
+START_TEST(pairs_press_sheets) {
+    sandwich two = sandwich_make(4, 3, 0.37, 0.2, 1e6, _i % 2 ? 0.5 : 0);
+    gxs_solver *solver = solver_make();
+    gxs_step_desc step = step_make(0.002, 0);
+    gxs_step_report report;
+    double before[3] = {0, 0, 0}, after[3] = {0, 0, 0}, mass = 0, first = 0, deepest = 0;
+    size_t i, r;
+    int round;
+    ck_assert_int_eq(gxs_solver_set_model(solver, &two.model, NULL), GX_OK);
+    step.pairs = two.pairs;
+    step.pair_count = two.model.element_count / 2;
+    step.pair_slips = two.slips;
+    step.newton_iterations = 4;
+    for (i = 0; i < two.plain; i++) {
+        const int upper = i >= two.plain / 2;
+        mass += solver->system->model.lumped[i];
+        two.displacement[3 * i + 2] = upper ? 0.05 + (_i < 2 ? 0 : 0.05 * two.rest[3 * i]) : 0;
+        two.velocity[3 * i + 2] = upper ? -2 : 0;
+        two.velocity[3 * i] = upper ? 0.5 : 0;
+        if (upper && _i >= 2) two.displacement[3 * ((size_t)two.affine[i]) + 2] = 0.05;
+    }
+    for (i = 0; i < two.model.copy_count; i++)
+        for (r = 0; r < 3; r++) before[r] += solver->system->model.lumped[i] * two.velocity[3 * i + r];
+    for (round = 0; round < 80; round++) {
+        ck_assert_int_eq(gxs_solver_step(solver, &step, two.displacement, two.velocity, &report, NULL), GX_OK);
+        deepest = fmax(deepest, overlap_of(&two, &step));
+        first = round == 0 ? report.energy : first;
+        assert_that(report.cg_iterations <= 60, "%u iterations", report.cg_iterations);
+    }
+    for (i = 0; i < two.model.copy_count; i++)
+        for (r = 0; r < 3; r++) after[r] += solver->system->model.lumped[i] * two.velocity[3 * i + r];
+    for (r = 0; r < 3; r++)
+        assert_that(fabs(after[r] - before[r]) <= 1e-8 * mass, "%g, %g of %g", before[r], after[r] - before[r], mass);
+    assert_that(deepest > 1e-4 && deepest < 0.05, "overlap %g", deepest);
+    assert_that(overlap_of(&two, &step) < 1e-9, "they do not part: %g", overlap_of(&two, &step));
+    gxs_solver_destroy(solver);
+    sandwich_free(&two);
+}
+END_TEST
+
+/* Sheets that lie on each other, clamped at one side, press each other apart and bend under their weight: by
+   multigrid as by the blocks alone */
+START_TEST(pairs_carry_sheets) {
+    static const gxs_preconditioner ways[2] = {GXS_MULTIGRID, GXS_BLOCK_JACOBI};
+    double *found[2], most = 0, off = 0, deepest = 0;
+    unsigned iterations[2];
+    size_t i, way, n = 0;
+    for (way = 0; way < 2; way++) {
+        sandwich two = sandwich_make(6, 2, 0.37, 0.2, 1e5, 0);
+        gxs_solver_desc desc;
+        gxs_solver *solver = NULL;
+        gxs_step_desc step = step_make(0, -0.1);
+        gxs_step_report report;
+        memset(&desc, 0, sizeof desc);
+        desc.preconditioner = ways[way];
+        ck_assert_int_eq(gxs_solver_create(&desc, &solver, NULL), GX_OK);
+        for (i = 0; i < two.plain; i++)
+            two.held[i] = two.held[two.affine[i]] = two.held[two.affine[i] + 1] = two.held[two.affine[i] + 2] =
+                two.rest[3 * i] < 1e-9;
+        for (i = 0; i < two.model.element_count / 2; i++) two.pairs[i].offset = 0.01; /* they press each other apart */
+        step.pairs = two.pairs;
+        step.pair_count = two.model.element_count / 2;
+        step.integrator = GXS_STATIC;
+        step.newton_iterations = 12;
+        step.newton_tolerance = 1e-7;
+        step.cg_iterations = 20000;
+        step.cg_tolerance = 1e-6;
+        ck_assert_int_eq(advance(solver, &two.model, &step, two.displacement, two.velocity, &report, NULL), GX_OK);
+        iterations[way] = report.cg_iterations / (report.newton_iterations + (report.newton_iterations == 0));
+        deepest = fmax(deepest,
+                       fabs(two.displacement[3 * (two.plain - 1) + 2] - two.displacement[3 * (two.plain / 2 - 1) + 2]));
+        n = 3 * two.model.copy_count;
+        found[way] = (double *)zeroed(n, sizeof(double));
+        memcpy(found[way], two.displacement, n * sizeof(double));
+        gxs_solver_destroy(solver);
+        sandwich_free(&two);
+    }
+    for (i = 0; i < n; i++) {
+        most = fmax(most, fabs(found[1][i]));
+        off = fmax(off, fabs(found[0][i] - found[1][i]));
+    }
+    assert_that(most > 1e-5 && off < 1e-3 * most && deepest > 1e-4, "off by %g of %g, apart %g", off, most, deepest);
+    assert_that(3 * iterations[0] < iterations[1], "%u iterations, blocks alone %u", iterations[0], iterations[1]);
+    free(found[0]);
+    free(found[1]);
+}
+END_TEST
+
 /* A slab of 15 x 4 cubes, clamped, without inertia: iterations to 1e-2. By the blocks alone they are 700 and more. The
    error's energy is compared with that of the answer by four solves to 1e-5. */
 START_TEST(multigrid_bends_with_sheets) {
@@ -594,12 +826,65 @@ START_TEST(multigrid_moves_sheets) {
     gxs_step_desc step = step_make(sqrt(7.5), -1e-3);
     gxs_step_report report;
     hold_left(&made);
+    step.newton_iterations = 1;
     made.s.material->poisson = 0.4;
     ck_assert_int_eq(advance(solver, &made.s.model, &step, made.s.displacement, made.s.velocity, &report, NULL), GX_OK);
     ck_assert_int_eq(report.preconditioner, GXS_MULTIGRID);
     assert_that(report.cg_iterations <= most[_i], "%u iterations", report.cg_iterations);
     gxs_solver_destroy(solver);
     sheet_free(&made);
+}
+END_TEST
+
+/* A slice that is let go in steps of 33 ms, as those of slab_in_five: where the free end is, x 3. newton: iterations;
+   60: to balance. Returns how many there were. */
+static uint32_t fling(uint32_t newton, double quality, size_t steps, double *at) {
+    sheet made = sheet_make(20, 1, 0.37, 0.2, 0, GXS_ST_VENANT_KIRCHHOFF);
+    gxs_solver *solver = solver_make();
+    gxs_step_desc step = step_make(18.3, -3.27e-3);
+    gxs_step_report report;
+    uint32_t sum = 0;
+    size_t i, end = 0;
+    hold_left(&made);
+    step.newton_iterations = newton;
+    step.newton_tolerance = newton == 60 ? 1e-7 : 0;
+    step.cg_tolerance = newton == 60 ? 1e-4 : 0;
+    step.quality = quality;
+    for (i = 0; i < made.nodes; i++)
+        if (made.s.rest[3 * i] > made.s.rest[3 * end]) end = i;
+    ck_assert_int_eq(gxs_solver_set_model(solver, &made.s.model, NULL), GX_OK);
+    for (i = 0; i < steps; i++) {
+        ck_assert_int_eq(gxs_solver_step(solver, &step, made.s.displacement, made.s.velocity, &report, NULL), GX_OK);
+        memcpy(at + 3 * i, made.s.displacement + 3 * end, 3 * sizeof *at);
+        sum += report.newton_iterations;
+    }
+    gxs_solver_destroy(solver);
+    sheet_free(&made);
+    return sum;
+}
+
+/* Without a number Newton's method goes on until flung sheets move within 5 % of converged steps. One iteration lags.
+ */
+START_TEST(flung_sheets_settle) {
+    enum { STEPS = 15 };
+    static const uint32_t newton[2] = {1, 0};
+    double truth[3 * STEPS], at[3 * STEPS], error[2], most = 0;
+    uint32_t count[3];
+    size_t i, run;
+    count[2] = fling(60, 0, STEPS, truth);
+    for (i = 0; i < STEPS; i++) most = fmax(most, sqrt(gxsp_dot(truth + 3 * i, truth + 3 * i, 1)));
+    for (run = 0; run < 2; run++) {
+        double sum = 0;
+        count[run] = fling(newton[run], 0, STEPS, at);
+        for (i = 0; i < 3 * STEPS; i++) sum += (at[i] - truth[i]) * (at[i] - truth[i]);
+        error[run] = sqrt(sum / STEPS) / most;
+    }
+    assert_that(most > 10, "it moves by %g", most);
+    assert_that(error[0] > 0.2, "one iteration is off by %g", error[0]);
+    assert_that(error[1] < 0.05, "off by %g", error[1]);
+    ck_assert_uint_eq(count[0], STEPS);
+    assert_that(count[1] > 2 * STEPS && count[1] < count[2], "%u and %u iterations", count[1], count[2]);
+    assert_that(fling(0, 0.1, 2, at) > 2 * 2, "one iteration each by quality"); /* its parts settle, too */
 }
 END_TEST
 
@@ -637,9 +922,13 @@ int main(void) {
     tcase_add_loop_test(all, free_sheets_keep_their_momentum, 0, 4 * KINDS);
     tcase_add_loop_test(all, multigrid_bends_with_sheets, 0, 3);
     tcase_add_loop_test(all, multigrid_moves_sheets, 0, 3);
+    tcase_add_test(all, flung_sheets_settle);
     tcase_add_test(all, none_is_none);
     tcase_add_test(all, bad_input_is_named);
     tcase_add_test(all, springs_pull_at_sheets);
+    tcase_add_loop_test(all, free_sheets_take_few_iterations, 0, 6);
+    tcase_add_loop_test(all, pairs_press_sheets, 0, 4);
+    tcase_add_test(all, pairs_carry_sheets);
     tcase_add_loop_test(all, every_allocation_may_fail, 0, KINDS);
     tcase_set_timeout(all, 120);
     suite_add_tcase(suite, all);

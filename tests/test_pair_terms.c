@@ -214,6 +214,7 @@ START_TEST(formulas_match_differences) {
     for (round = 0; round < 4000 / FEWER; round++) {
         sample a;
         gxsp_pull pull;
+        gxsp_system system;
         gxsp_share share[GXS_POINT_MOST];
         double gradient[3 * COPIES] = {0}, sum = 0, x[3], product;
         seed((uint64_t)round);
@@ -256,10 +257,11 @@ START_TEST(formulas_match_differences) {
             product = gxsp_dot(x, y, 1);
             assert_that(product >= -1e-12 * a.pair.stiffness, "%g", product);
         }
-        gxsp_balance_shares(share, a.weight, a.pair.point.count);
+        memset(&system, 0, sizeof system);
+        gxsp_balance_shares(&system, share, a.weight, a.pair.point.count);
         for (k = 0; k < (int)a.pair.point.count; k++) {
             sum += (double)share[k].weight;
-            assert_that(fabs((double)share[k].weight - a.weight[k]) < 1e-5, "%g", a.weight[k]);
+            assert_that(fabs((double)share[k].weight - a.weight[k]) < 1e-4, "%g", a.weight[k]);
         }
         assert_that(sum == 0, "%g", sum);
     }

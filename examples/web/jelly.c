@@ -29,12 +29,10 @@ static gx_blade *blade;
 static gx_skin skin;
 static double numbers[NUMBERS];
 static float *positions, *normals; /* skin.vertex_count x 3, in space, m */
-static gxs_point *points;          /* of the skin, for the ground of thin bodies */
-static size_t point_count;
 static gx_anchor grip;
 static gxs_spring spring;
-static int holding, thin; /* thin: its copies are affine, and pieces do not touch each other */
-static double youngs;     /* Pa */
+static int holding;
+static double youngs; /* Pa */
 static gx_body *marks[MARKS];
 static size_t mark_count;
 static gx_failure failure;     /* of the last new body */
@@ -43,38 +41,6 @@ static uint32_t *model_triangles;
 static uint32_t model_vertex_count, model_triangle_count;
 
 /* ---------------------------------------------------------------------------------------------- >>drawing */
-
-static int compare_corners(const void *a, const void *b) { return memcmp(a, b, 5 * sizeof(uint32_t)); }
-
-/* Corners of the skin that are different points of the body: those touch the ground. */
-static int find_points(void) {
-    typedef uint32_t corner[6]; /* material point; copies of weight not 0, ascending; vertex */
-    corner *corners = (corner *)malloc((skin.vertex_count + 1) * sizeof *corners);
-    gxs_point *room = (gxs_point *)realloc(points, (skin.vertex_count + 1) * sizeof *points);
-    size_t v, i, k;
-    if (room) points = room;
-    point_count = 0;
-    if (!corners || !room) {
-        free(corners);
-        return GX_ERROR_MEMORY;
-    }
-    for (v = 0; v < skin.vertex_count; v++) {
-        uint32_t *c = corners[v];
-        c[0] = skin.vertex_point[v];
-        for (k = 0; k < 4; k++) {
-            const uint32_t copy = skin.vertex_weights[4 * v + k] > 0 ? skin.vertex_copies[4 * v + k] : UINT32_MAX;
-            for (i = k; i > 0 && c[i] > copy; i--) c[i + 1] = c[i];
-            c[i + 1] = copy;
-        }
-        c[5] = (uint32_t)v;
-    }
-    qsort(corners, skin.vertex_count, sizeof *corners, compare_corners);
-    for (i = 0; i < skin.vertex_count; i++)
-        if (i == 0 || compare_corners(corners[i], corners[i - 1]) != 0)
-            points[point_count++] = gx_skin_point(&skin, corners[i][5]);
-    free(corners);
-    return GX_OK;
-}
 
 static int refresh(void) {
     gx_skin_desc shading;
@@ -89,8 +55,7 @@ static int refresh(void) {
     if (p) positions = p;
     n = (float *)realloc(normals, (3 * skin.vertex_count + 1) * sizeof *n);
     if (n) normals = n;
-    if (!p || !n) return GX_ERROR_MEMORY;
-    return thin ? find_points() : GX_OK;
+    return p && n ? GX_OK : GX_ERROR_MEMORY;
 }
 
 /* Where the skin is now: fills what jelly_positions and jelly_normals show. */
@@ -296,7 +261,7 @@ EXPORT(jelly_new) int jelly_new(int kind, double young) {
     desc.density = 1000;
     result = kind == MODEL ? make_model(&desc, &held, &made) : make_mesh(&desc, kind, &held, &made);
     if (result == GX_OK) result = (int)gx_body_hold(made, &held, 1, &failure);
-    if (result == GX_OK && kind != 1) result = (int)gx_body_contact(made, &contact, &failure);
+    if (result == GX_OK) result = (int)gx_body_contact(made, &contact, &failure);
     if (result != GX_OK) {
         gx_body_destroy(made);
         return result;
@@ -304,7 +269,6 @@ EXPORT(jelly_new) int jelly_new(int kind, double young) {
     drop();
     body = made;
     youngs = young;
-    thin = kind == 1;
     result = take_blade();
     return result == GX_OK ? refresh() : result;
 }
@@ -378,32 +342,19 @@ EXPORT(jelly_release) void jelly_release(void) { holding = 0; }
 /* A step of numbers[0] seconds under gravity numbers[1], m/s2 */
 EXPORT(jelly_step) int jelly_step(void) {
     gx_step_desc step;
-    gxs_plane plane;
     gx_collider ground;
     memset(&step, 0, sizeof step);
+    memset(&ground, 0, sizeof ground);
     step.dt = numbers[0];
     step.gravity[2] = -numbers[1];
     step.integrator = GXS_BDF2;
     step.mass_damping = 0.4;
     step.sleep_speed = 0.01;
-    if (thin) {
-        memset(&plane, 0, sizeof plane);
-        plane.normal[2] = 1;
-        plane.stiffness = 0.02 * youngs;
-        plane.friction = 0.5;
-        step.planes = &plane;
-        step.plane_count = 1;
-        step.points = points;
-        step.point_count = point_count;
-        step.newton_iterations = 2;
-    } else {
-        memset(&ground, 0, sizeof ground);
-        ground.kind = GX_COLLIDER_PLANE;
-        ground.pose[0] = ground.pose[5] = ground.pose[10] = 1;
-        ground.friction = 0.5;
-        step.colliders = &ground;
-        step.collider_count = 1;
-    }
+    ground.kind = GX_COLLIDER_PLANE;
+    ground.pose[0] = ground.pose[5] = ground.pose[10] = 1;
+    ground.friction = 0.5;
+    step.colliders = &ground;
+    step.collider_count = 1;
     step.springs = &spring;
     step.spring_anchors = &grip;
     step.spring_count = holding ? 1 : 0;
