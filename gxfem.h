@@ -12019,13 +12019,13 @@ static gx_result gxp_add_states(gx_body *body, const gxp_touch_surface *from, ui
     return GX_OK;
 }
 
-/* The facets of an element: a part of `order`, which is sorted by elements. Nothing of it is owned. */
+/* The facets of an element: a part of `order`, which has facets, sorted by elements. Nothing of it is owned. */
 static gxp_keys gxp_facets_of(const gxp_keys *order, uint32_t element) {
     gxp_keys part;
     const uint32_t first = gxp_first_key(order, (uint64_t)element << 32);
     uint32_t end;
     for (end = first; end < order->count && GXP_FIRST(order->data[end]) == element;) end++;
-    part.data = order->data != NULL ? order->data + first : NULL;
+    part.data = order->data + first;
     part.count = part.capacity = end - first;
     return part;
 }
@@ -16022,11 +16022,32 @@ static gx_result gxp_list_owners(gx_blade *blade, uint32_t layer, const double *
     return result == GX_OK ? gxp_push(blade->body, &blade->owned_starts, blade->owned.count) : result;
 }
 
+/* The edge of the last move was not in this layer then. If a place of it is in its material now, the layer has moved
+   over it: that part of the front begins at the present places of the edge where those are in the air. */
+static gx_result gxp_begin_in_air(gx_blade *blade, uint32_t layer, const double *edge, uint32_t count) {
+    gxp_front_list *before = &blade->samples;
+    uint32_t i, first, end;
+    gx_result result = GX_OK;
+    for (first = 0; first < before->count && blade->now.edge.count > 0 && result == GX_OK; first = end) {
+        int inside = 0;
+        for (end = first; end < before->count && (end == first || !before->data[end - 1].gap); end++)
+            inside |= !(before->data[end].distance > 0);
+        for (i = first; i < end && inside && result == GX_OK; i++) {
+            gxp_front_vertex at;
+            result = gxp_see(blade, layer, edge, count, before->data[i].along, NULL, &at);
+            at.gap = before->data[i].gap;
+            if (at.distance > 0) before->data[i] = at;
+        }
+    }
+    return result;
+}
+
 /* Where no owner's front is, the edge of the last move is the layer's. */
 static gx_result gxp_list_before(gx_blade *blade, uint32_t layer, const double *before, const double *edge,
                                  uint32_t count) {
     gx_result result = gxp_copy_front(blade->body, &blade->advanced, &blade->samples);
     if (result == GX_OK) result = gxp_see_edge(blade, layer, before, count);
+    if (result == GX_OK) result = gxp_begin_in_air(blade, layer, edge, count);
     blade->owned_starts.count--;
     if (result == GX_OK)
         result = gxp_list_owned(blade, layer, 0, blade->samples.data, blade->samples.count, edge, count);
@@ -19446,7 +19467,7 @@ static void gxp_check_contact(gxb_stream *s, const gx_body *body, const gxp_stat
     uint32_t i;
     int k;
     if (!n->contact) return;
-    gxp_require_true(s, body->copies.affine == NULL && numbers[0] > 0 && numbers[4] > 0);
+    gxp_require_true(s, numbers[0] > 0 && numbers[4] > 0);
     for (i = 0; i < 5; i++) gxp_require_true(s, gxp_is_finite(numbers[i]) && numbers[i] >= 0);
     for (i = 1; i < n->known; i++) gxp_require_true(s, t->known[i - 1].id < t->known[i].id);
     for (i = 3; i < n->touching; i += 3)

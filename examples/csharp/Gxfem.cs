@@ -1155,6 +1155,9 @@ namespace Gxfem {
         public static extern gx_result gxb_boolean_evaluate(IntPtr boolean, IntPtr result, IntPtr failure);
 
         [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
+        public static extern gx_result gxb_boolean_remove(IntPtr boolean, uint operand, IntPtr failure);
+
+        [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
         public static extern gx_result gxb_boolean_set_fine(IntPtr boolean, int fine, IntPtr failure);
 
         [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]

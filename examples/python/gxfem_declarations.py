@@ -1283,6 +1283,7 @@ FUNCTIONS = {
     'gxb_boolean_defects': (c_int, [POINTER(gxb_boolean), POINTER(gxb_defects), POINTER(gx_failure)]),
     'gxb_boolean_destroy': (None, [POINTER(gxb_boolean)]),
     'gxb_boolean_evaluate': (c_int, [POINTER(gxb_boolean), POINTER(gxb_boolean_result), POINTER(gx_failure)]),
+    'gxb_boolean_remove': (c_int, [POINTER(gxb_boolean), c_uint32, POINTER(gx_failure)]),
     'gxb_boolean_set_fine': (c_int, [POINTER(gxb_boolean), c_int, POINTER(gx_failure)]),
     'gxb_boolean_set_mend': (c_int, [POINTER(gxb_boolean), c_int, POINTER(gx_failure)]),
     'gxb_boolean_set_retained': (c_int, [POINTER(gxb_boolean), c_int, POINTER(gx_failure)]),
