@@ -62,6 +62,7 @@ help:
 	@echo "make bench       all benches anew (half an hour), then charts; BENCH=--small: minutes, and docs/ stays as it is"
 	@echo "make charts      docs/charts/, docs/BENCH.md, tables in README.md from what benches have measured; runs those"
 	@echo "                 that have not; installs gnuplot"
+	@echo "make page-blade  their chart and sections of blades alone, from make bench-blade bench-strokes"
 	@echo "make bench-NAME  one bench: CSV on stdout and in $(BUILD)/bench/, a table on stderr"
 	@echo "  quadrature     integrals over parts of cut elements beside RXFEM, adaptive and regular sampling"
 	@echo "  stepping       error of the motion against time, over all settings; other methods"
@@ -465,6 +466,11 @@ charts:
 	sh bench/page.sh $(tables) $(if $(small),$(tables),docs)/BENCH.md $(if $(small),$(tables)/)README.md || echo charts >>$(tables)/failed
 	@[ ! -e $(tables)/failed ] || { echo "failed: $$(tr '\n' ' ' <$(tables)/failed)" >&2; exit 1; }
 
+# The chart and the sections of blades alone, from tables that are there
+page-blade:
+	@sh tests/install.sh charts >&2
+	@sh bench/charts.sh $(tables) docs/charts blade && sh bench/page.sh $(tables) docs/BENCH.md blade
+
 check-all: check
 	@$(MAKE) --no-print-directory lint
 	@$(MAKE) --no-print-directory examples
@@ -482,4 +488,4 @@ check-all: check
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: help web check-web lib bindings check-bindings examples demo check-page scenes pictures animation bench-programs check check-programs run-gxcut run-gxboolean run-corpus $(sort $(programs:%=run-%) $(tests:%=run-%)) FORCE sanitize sanitize-scenes check-settled compile amalgam check-amalgam install check-package coverage formatted lint format fuzz fuzz-blade flags hashes platforms check-wasm $(benches:%=bench-%) bench charts check-all clean
+.PHONY: help web check-web lib bindings check-bindings examples demo check-page scenes pictures animation bench-programs check check-programs run-gxcut run-gxboolean run-corpus $(sort $(programs:%=run-%) $(tests:%=run-%)) FORCE sanitize sanitize-scenes check-settled compile amalgam check-amalgam install check-package coverage formatted lint format fuzz fuzz-blade flags hashes platforms check-wasm $(benches:%=bench-%) bench charts page-blade check-all clean

@@ -59,7 +59,7 @@
  *     what acts on it:           >>attached >>supports >>model
  *     the skin:                  >>corners >>vertices >>faces >>skinning
  *     points and rays:           >>tree >>locate >>nearest >>hits >>rays
- *     a step, with contact:      >>touch >>colliders >>meeting >>pressing >>step
+ *     a step, with contact:      >>touch >>colliders >>meeting >>pressing >>telling >>step
  *     a blade in space:          >>layers >>edges >>relations >>fronts >>glances >>strokes >>ways >>blade
  *                                >>contacts >>carve
  *     beginning, end, bytes:     >>grid >>create >>hashes >>stream >>scabbard >>save
@@ -559,9 +559,13 @@ typedef struct gx_step_desc {
     const gx_collider *colliders; /* collider_count: see gx_body_contact */
     size_t collider_count;
     gx_collider_load *collider_loads; /* collider_count: receives what each of them feels; or NULL */
-    double sleep_speed;               /* m/s: slower fragments fall asleep (see gxs_step_desc); 0: none */
-    double sleep_time;                /* s, for how long they must be slower; 0: 0.5 */
-    double (*clock)(void *user);      /* s; NULL: the body's */
+    /* Which pieces touch, by gx_view's fragments: 0: these two do not; NULL: all do. other is UINT32_MAX: a collider of
+       that id. It must answer the same for both orders of two pieces, and within a step */
+    int (*contact_filter)(void *user, uint32_t fragment, uint32_t other, uint32_t collider);
+    void *contact_filter_user;
+    double sleep_speed;          /* m/s: slower fragments fall asleep (see gxs_step_desc); 0: none */
+    double sleep_time;           /* s, for how long they must be slower; 0: 0.5 */
+    double (*clock)(void *user); /* s; NULL: the body's */
     void *clock_user;
     double budget_seconds; /* no iteration begins after this time; 0: no limit. Needs a clock */
     /* above 0: the error of the motion asked for, as a share of it, .03 say, in place of integrator, substeps, quick
@@ -635,6 +639,32 @@ typedef struct gx_contact {
  */
 GXFEM_API gx_result gx_body_contacts(const gx_body *body, gx_contact *contacts, size_t capacity, size_t *count,
                                      gx_failure *failure /* or NULL */);
+
+enum {                       /* of gx_contact_event.change */
+       GX_CONTACT_BEGAN = 0, /* since the last call */
+       GX_CONTACT_PERSISTS,
+       GX_CONTACT_ENDED /* also where a fragment has got another id or is no more */
+};
+
+/* Two fragments that pressed on each other at the end of the last step, or a fragment and a collider, or one with
+   itself: all their contacts together */
+typedef struct gx_contact_event {
+    uint32_t change;          /* GX_CONTACT_ */
+    uint32_t fragment, other; /* ids, see gx_view.fragment_id: the lower one first; other is 0: a collider */
+    uint32_t collider;        /* its id; UINT32_MAX: none */
+    uint32_t contacts;        /* how many of gx_contact they are; 0, as all below: it has ended */
+    double force[3];          /* on fragment, N; 0 where one presses on itself */
+    double load;              /* N: sum of the contacts' normal forces */
+    double position[3];       /* m: mean of theirs, by normal force */
+    double normal[3];         /* their mean, by normal force, to fragment, of length 1; 0 where they cancel */
+} gx_contact_event;
+/* What touches now, beside what touched at the last call: for sounds, for what breaks. Ascending by fragment, other,
+   collider. *count: how many there are, also after CAPACITY, which leaves what is known of the last call as it was.
+   gx_body_view must have been called after the last cut, since it gives new fragments their ids.
+   Errors: ARGUMENT, CAPACITY (capacity is below *count), MEMORY, SEQUENCE (contact is off; a cut has been since the
+   step; gx_body_view). */
+GXFEM_API gx_result gx_body_contact_events(gx_body *body, gx_contact_event *events, size_t capacity, size_t *count,
+                                           gx_failure *failure /* or NULL */);
 
 /* >>drawing -------------------------------------------------------------------------------------------------------- */
 
@@ -1514,8 +1544,11 @@ typedef struct gxp_touch_vertex { /* of the surface: a sample */
     double weights[4]; /* of the copies that move it */
     double rest[3];    /* m */
     double normal[3];  /* outward, of length 1, at rest */
-    double area, size; /* m2: its share of the surface; m: of its element */
-    double young;      /* Pa */
+    double area, size; /* m2: its share of the surface, 0 if it is no sample of pieces; m: of its element */
+    double given;      /* m2: what area is without what other vertices have given, or before it was given away */
+    uint32_t stands;   /* the sample that has its area: itself, or another vertex */
+    uint32_t unused;
+    double young; /* Pa */
 } gxp_touch_vertex;
 
 typedef struct gxp_touch_facet {
@@ -1536,7 +1569,8 @@ typedef struct gxp_touch_surface { /* facets by fragment, then as they lie in sp
     gxp_touch_state *states; /* by sample, ascending */
     uint32_t vertex_count, facet_count, vertex_capacity, facet_capacity;
     uint32_t state_count, state_capacity;
-    double largest; /* m: size of the vertices' elements */
+    double largest;    /* m: size of the vertices' elements */
+    gxp_words guesses; /* of each vertex: the facet that it met when it was sought last, or GXP_NONE */
 } gxp_touch_surface;
 
 typedef struct gxp_touch_pair {  /* of a step */
@@ -1553,6 +1587,11 @@ typedef struct gxp_touch_pair {  /* of a step */
     double place[3], way[3];     /* m: of the collider's point at the step's start; its way within the step */
 } gxp_touch_pair;
 
+typedef struct gxp_touch_box { /* over facets */
+    gxp_bounds from, to;       /* at the step's start, and at its end if nothing changes their velocities */
+    gxp_bounds normals;        /* at the start */
+} gxp_touch_box;
+
 typedef struct gxp_touch_beside { /* a sample that may come near a collider */
     uint32_t collider, parts;     /* parts above 1: it is a facet, whose edges are divided */
     double area;                  /* m2: of the facet, or of what this entry adds to a vertex */
@@ -1562,6 +1601,11 @@ typedef struct gxp_touch_known { /* a collider of the last step */
     uint32_t id, unused;
     uint64_t hash; /* of its shape and pose */
 } gxp_touch_known;
+
+typedef struct gxp_touch_event {                   /* what touches, as gx_contact_event has it */
+    uint32_t who[3], contacts;                     /* ids: fragment, other, collider */
+    double force[3], load, position[3], normal[3]; /* the last two: sums, by load */
+} gxp_touch_event;
 
 typedef struct gxp_touch {
     int on;
@@ -1575,26 +1619,34 @@ typedef struct gxp_touch {
     uint64_t pressed;       /* hash of the states after the last step; 0: nothing pressed */
     gxp_touch_known *known; /* ascending ids */
     uint32_t known_count, known_capacity;
+    gxp_words touching; /* what touched at the last call of gx_body_contact_events: fragment, other, collider */
     /* of a step */
     const gx_collider *colliders; /* collider_count: the caller's */
+    int (*filter)(void *user, uint32_t fragment, uint32_t other, uint32_t collider);
+    void *filter_user;
     uint32_t collider_count;
     gxp_keys named;    /* id, place of a collider; ascending */
     gxp_words changed; /* of each collider: 1 if it moves or is not as it was in the last step */
     gxp_touch_beside *beside;
     uint32_t beside_capacity;
     gxp_touch_pair *pairs;
-    double *moved;          /* vertices x 9: position and velocity in space, outward normal */
-    double *facing;         /* facets x 3: normals in space, of length 1, or 0 */
-    gxp_bounds *boxes;      /* a complete binary tree over the facets, GXP_TOUCH_LEAF in each of its leaves */
-    gxp_words sides;        /* pairs x GXP_TOUCH_COPIES: copies of their points */
-    double *weights;        /* likewise */
-    double *slips, *forces; /* all pairs of the step x 3 */
-    gxp_keys order;         /* facets; places of vertices; samples beside colliders */
-    gxp_keys placed;        /* facets by element */
-    gxp_words ranked;       /* facets along a curve */
-    uint32_t leaf_count;    /* a power of two */
-    uint32_t given;         /* pairs of the caller, which stand first */
-    uint32_t found, kept;   /* pairs of contact: of this step; of the last one that succeeded */
+    double *moved;           /* vertices x 9: position and velocity in space, outward normal */
+    double *facing;          /* facets x 3: normals in space, of length 1, or 0 */
+    gxp_touch_box *boxes;    /* a complete binary tree over the facets, GXP_TOUCH_LEAF in each of its leaves */
+    gxp_words sides;         /* pairs x GXP_TOUCH_COPIES: copies of their points */
+    double *weights;         /* likewise */
+    double *slips, *forces;  /* all pairs of the step x 3 */
+    gxp_keys order;          /* facets; places of vertices; samples beside colliders */
+    gxp_keys placed;         /* facets by element */
+    gxp_keys members;        /* of a surface: sample, vertex for which it stands */
+    gxp_keys edges;          /* of a surface's facets: two vertices, both ways */
+    gxp_words roles;         /* of a surface's vertices: GXP_TOUCH_INSIDE ... */
+    gxp_words ranked;        /* facets along a curve */
+    uint32_t leaf_count;     /* a power of two */
+    uint32_t given;          /* pairs of the caller, which stand first */
+    gxp_touch_event *events; /* of a call */
+    uint32_t event_capacity;
+    uint32_t found, kept; /* pairs of contact: of this step; of the last one that succeeded */
     uint32_t pair_capacity, moved_capacity, facing_capacity, box_capacity, weight_capacity, slip_capacity,
         force_capacity;
 } gxp_touch;
@@ -1906,16 +1958,19 @@ static const gxp_column gxp_lists[] = {
     GXP_LIST(touch.surfaces[1].facets, touch.surfaces[1].facet_capacity, sizeof(gxp_touch_facet)),
     GXP_LIST(touch.surfaces[0].states, touch.surfaces[0].state_capacity, sizeof(gxp_touch_state)),
     GXP_LIST(touch.surfaces[1].states, touch.surfaces[1].state_capacity, sizeof(gxp_touch_state)),
+    GXP_WORDS(touch.surfaces[0].guesses), GXP_WORDS(touch.surfaces[1].guesses),
     GXP_LIST(touch.known, touch.known_capacity, sizeof(gxp_touch_known)),
     GXP_LIST(touch.pairs, touch.pair_capacity, sizeof(gxp_touch_pair)),
     GXP_LIST(touch.moved, touch.moved_capacity, 9 * sizeof(double)),
     GXP_LIST(touch.facing, touch.facing_capacity, 3 * sizeof(double)),
-    GXP_LIST(touch.boxes, touch.box_capacity, sizeof(gxp_bounds)), GXP_WORDS(touch.sides),
+    GXP_LIST(touch.events, touch.event_capacity, sizeof(gxp_touch_event)), GXP_WORDS(touch.touching),
+    GXP_LIST(touch.boxes, touch.box_capacity, sizeof(gxp_touch_box)), GXP_WORDS(touch.sides),
     GXP_LIST(touch.weights, touch.weight_capacity, sizeof(double)),
     GXP_LIST(touch.slips, touch.slip_capacity, 3 * sizeof(double)),
     GXP_LIST(touch.forces, touch.force_capacity, 3 * sizeof(double)),
     GXP_KEYS(touch.order), GXP_WORDS(touch.ranked), GXP_KEYS(touch.named), GXP_WORDS(touch.changed),
     GXP_LIST(touch.beside, touch.beside_capacity, sizeof(gxp_touch_beside)), GXP_KEYS(touch.placed),
+    GXP_KEYS(touch.edges), GXP_KEYS(touch.members), GXP_WORDS(touch.roles),
     GXP_WORDS(scratch.removed), GXP_KEYS(scratch.removed_of), GXP_WORDS(scratch.pinches), GXP_WORDS(scratch.touched),
     GXP_WORDS(scratch.new_cells),
     GXP_KEYS(scratch.links), GXP_KEYS(scratch.glue), GXP_KEYS(scratch.seams), GXP_WORDS(scratch.cluster),
@@ -2379,6 +2434,11 @@ static void gxp_triangle_normal(const double *x, const uint32_t *t, double n[3])
     n[0] = p[1] * q[2] - p[2] * q[1];
     n[1] = p[2] * q[0] - p[0] * q[2];
     n[2] = p[0] * q[1] - p[1] * q[0];
+}
+
+static double gxp_square_distance(const double *a, const double *b) {
+    const double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+    return gxp_dot(d, d);
 }
 
 static double gxp_seconds(const gx_body *body) {
@@ -11636,6 +11696,12 @@ GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const do
 /* Where the surface bends by more, rad, each side has samples with a normal of its own. */
 #define GXP_TOUCH_CREASE 0.7
 #define GXP_TOUCH_LEAF   4u
+/* Samples: a cosine, from which on a surface or its rim counts as even; in sizes of an element, how far a vertex may be
+   from the sample that takes its share of an even surface, and how large the shares of that one may become */
+#define GXP_TOUCH_EVEN  0.98
+#define GXP_TOUCH_APART 0.5
+#define GXP_TOUCH_SHARE 0.35
+enum { GXP_TOUCH_INSIDE, GXP_TOUCH_RIM, GXP_TOUCH_CORNER }; /* of a vertex: where it is on an even part of a surface */
 
 /* Releases the arrays of body.skin. */
 static void gxp_release_skin(gx_body *body) {
@@ -11648,8 +11714,18 @@ static void gxp_release_skin(gx_body *body) {
         if (gxp_lists[i].array >= first && gxp_lists[i].array < end) gxp_release_columns(body, &gxp_lists[i], 1);
 }
 
-/* Lists the triangles of body.skin by fragment, then along a curve through space at rest: touch.ranked[second of
-   touch.order[i]] is the i-th. */
+/* To which of six sides does a triangle of body.skin face at rest? */
+static uint32_t gxp_facet_side(const gxp_skin *s, uint32_t t) {
+    double n[3];
+    uint32_t k, most = 0;
+    gxp_triangle_normal(s->rest, s->triangles + 3 * (size_t)t, n);
+    for (k = 1; k < 3; k++)
+        if (fabs(n[k]) > fabs(n[most])) most = k;
+    return 2 * most + (n[most] < 0);
+}
+
+/* Lists the triangles of body.skin by fragment, by the side to which they face, then along a curve through space at
+   rest: touch.ranked[second of touch.order[i]] is the i-th. */
 static gx_result gxp_order_facets(gx_body *body) {
     const gxp_skin *s = &body->skin;
     gxp_keys *order = &body->touch.order;
@@ -11666,7 +11742,7 @@ static gx_result gxp_order_facets(gx_body *body) {
     for (i = 0; i < order->count && result == GX_OK; i++) {
         const uint32_t t = GXP_SECOND(order->data[i]);
         ranked->data[ranked->count++] = t;
-        order->data[i] = (uint64_t)s->fragment[t] << 32 | i;
+        order->data[i] = (uint64_t)(8 * s->fragment[t] + gxp_facet_side(s, t)) << 32 | i;
     }
     return result == GX_OK ? gxp_sort_keys(body, order, 0, order->count) : result;
 }
@@ -11681,6 +11757,16 @@ static void gxp_copy_sample(const gxp_skin *s, uint32_t i, gxp_touch_vertex *v) 
     for (k = 0; k < 3; k++) n[k] = (double)s->normal[3 * (size_t)i + (size_t)k];
     (void)gxp_unit(n, v->normal);
     v->element = GXP_NONE;
+    v->stands = i;
+}
+
+/* Twice the area of a facet at rest, along its normal */
+static void gxp_facet_normal(const gxp_touch_surface *s, const gxp_touch_facet *f, double n[3]) {
+    static const uint32_t corner[3] = {0, 1, 2};
+    double x[9];
+    int i;
+    for (i = 0; i < 3; i++) memcpy(x + 3 * i, s->vertices[f->vertex[i]].rest, 3 * sizeof *x);
+    gxp_triangle_normal(x, corner, n);
 }
 
 /* A facet, which gives its corners a third of its area */
@@ -11694,7 +11780,7 @@ static void gxp_copy_facet(const gx_body *body, uint32_t t, gxp_touch_surface *t
     gxp_triangle_normal(s->rest, facet->vertex, n);
     for (k = 0; k < 3; k++) {
         gxp_touch_vertex *v = &to->vertices[facet->vertex[k]];
-        v->area += gxp_size(n) / 6;
+        v->area = v->given += gxp_size(n) / 6;
         if (v->element != GXP_NONE) continue;
         v->element = facet->element;
         v->fragment = facet->fragment;
@@ -11714,14 +11800,116 @@ static gx_result gxp_copy_samples(gx_body *body, gxp_touch_surface *to) {
         result = gxp_reserve(a, &to->vertices, sizeof *to->vertices, 0, &to->vertex_capacity, s->vertex_count);
     if (result == GX_OK)
         result = gxp_reserve(a, &to->facets, sizeof *to->facets, 0, &to->facet_capacity, s->triangle_count);
+    if (result == GX_OK) result = gxp_start_words(body, &to->guesses, s->vertex_count);
     if (result != GX_OK) return result;
     to->vertex_count = s->vertex_count;
     to->facet_count = s->triangle_count;
     to->largest = 0;
-    for (i = 0; i < to->vertex_count; i++) gxp_copy_sample(s, i, &to->vertices[i]);
+    for (i = 0; i < to->vertex_count; i++) {
+        gxp_copy_sample(s, i, &to->vertices[i]);
+        to->guesses.data[to->guesses.count++] = GXP_NONE;
+    }
     for (i = 0; i < to->facet_count; i++)
         gxp_copy_facet(body, body->touch.ranked.data[GXP_SECOND(body->touch.order.data[i])], to, &to->facets[i]);
     return GX_OK;
+}
+
+/* Lists the edges of the facets both ways, ascending; those of two facets are there twice. */
+static gx_result gxp_list_edges(gx_body *body, const gxp_touch_surface *s) {
+    gxp_keys *edges = &body->touch.edges;
+    uint32_t i, n;
+    gx_result result;
+    edges->count = 0;
+    result = gxp_keys_room(body, edges, 12 * (size_t)s->facet_count);
+    for (i = 0; i < s->facet_count && result == GX_OK; i++)
+        for (n = 0; n < 3; n++) {
+            const uint64_t a = s->facets[i].vertex[n], b = s->facets[i].vertex[(n + 1) % 3];
+            edges->data[edges->count++] = a << 32 | b;
+            edges->data[edges->count++] = b << 32 | a;
+        }
+    return result == GX_OK ? gxp_sort_keys(body, edges, 0, edges->count) : result;
+}
+
+/* Is the i-th of the edges from `first` to end - 1, which lead away from one vertex, one of the rim? */
+static int gxp_is_rim(const gxp_keys *edges, uint32_t first, uint32_t end, uint32_t i) {
+    return (i == first || edges->data[i - 1] != edges->data[i]) &&
+           (i + 1 == end || edges->data[i + 1] != edges->data[i]);
+}
+
+/* The role of a vertex that the edges from `first` to end - 1 lead away from: on a rim it is a corner, unless the rim
+   is straight there. */
+static uint32_t gxp_role_of(const gxp_touch_surface *s, const gxp_keys *edges, uint32_t first, uint32_t end) {
+    const double *x = s->vertices[GXP_FIRST(edges->data[first])].rest;
+    double way[2][3] = {{0, 0, 0}, {0, 0, 0}};
+    uint32_t i, rims = 0;
+    int k;
+    for (i = first; i < end; i++) {
+        double d[3];
+        if (!gxp_is_rim(edges, first, end, i)) continue;
+        if (rims == 2) return GXP_TOUCH_CORNER;
+        for (k = 0; k < 3; k++) d[k] = s->vertices[GXP_SECOND(edges->data[i])].rest[k] - x[k];
+        (void)gxp_unit(d, way[rims++]);
+    }
+    return rims == 0 ? GXP_TOUCH_INSIDE : gxp_dot(way[0], way[1]) < -GXP_TOUCH_EVEN ? GXP_TOUCH_RIM : GXP_TOUCH_CORNER;
+}
+
+/* Gives all vertices their roles. Where the surface bends, they are corners. */
+static gx_result gxp_give_roles(gx_body *body, const gxp_touch_surface *s) {
+    const gxp_keys *edges = &body->touch.edges;
+    gxp_words *roles = &body->touch.roles;
+    gx_result result = gxp_start_words(body, roles, s->vertex_count);
+    uint32_t i, n, end;
+    if (result != GX_OK) return result;
+    for (; roles->count < s->vertex_count;) roles->data[roles->count++] = GXP_TOUCH_CORNER;
+    for (i = 0; i < edges->count; i = end) {
+        for (end = i; end < edges->count && GXP_FIRST(edges->data[end]) == GXP_FIRST(edges->data[i]);) end++;
+        roles->data[GXP_FIRST(edges->data[i])] = gxp_role_of(s, edges, i, end);
+    }
+    for (i = 0; i < s->facet_count; i++) {
+        double normal[3], unit[3];
+        gxp_facet_normal(s, &s->facets[i], normal);
+        if (!gxp_unit(normal, unit)) continue;
+        for (n = 0; n < 3; n++)
+            if (gxp_dot(unit, s->vertices[s->facets[i].vertex[n]].normal) < GXP_TOUCH_EVEN)
+                roles->data[s->facets[i].vertex[n]] = GXP_TOUCH_CORNER;
+    }
+    return GX_OK;
+}
+
+/* May the sample w stand for a vertex v, to which a facet's edge joins it? rim: the edge is of the rim */
+static int gxp_stands_for(const gxp_touch_vertex *w, const gxp_touch_vertex *v, uint32_t role, int rim) {
+    return w->area > 0 && (rim || role == GXP_TOUCH_INSIDE) &&
+           gxp_square_distance(v->rest, w->rest) < GXP_TOUCH_APART * v->size * GXP_TOUCH_APART * v->size &&
+           w->area + v->area < GXP_TOUCH_SHARE * v->size * v->size;
+}
+
+/* Chooses the samples: a cut divides elements, so that vertices are closer to each other than copies are. A vertex that
+   is close to a sample on the same even surface gives it its area, and is none. Corners are samples anyhow. */
+static gx_result gxp_choose_samples(gx_body *body, gxp_touch_surface *s) {
+    const gxp_keys *edges = &body->touch.edges;
+    gx_result result = gxp_list_edges(body, s);
+    uint32_t i, j, end;
+    if (result == GX_OK) result = gxp_give_roles(body, s);
+    for (i = 0; i < edges->count && result == GX_OK; i = end) {
+        const uint32_t vertex = GXP_FIRST(edges->data[i]);
+        gxp_touch_vertex *v = &s->vertices[vertex];
+        double best = GXP_TREE_ALL;
+        for (end = i; end < edges->count && GXP_FIRST(edges->data[end]) == vertex;) end++;
+        for (j = i; j < end && body->touch.roles.data[vertex] != GXP_TOUCH_CORNER; j++) {
+            const uint32_t other = GXP_SECOND(edges->data[j]);
+            gxp_touch_vertex *w = &s->vertices[other];
+            const double square = gxp_square_distance(v->rest, w->rest);
+            if (other > vertex && body->touch.roles.data[other] != GXP_TOUCH_CORNER) continue; /* it may be none yet */
+            if (!gxp_stands_for(w, v, body->touch.roles.data[vertex], gxp_is_rim(edges, i, end, j)) || square >= best)
+                continue;
+            best = square;
+            v->stands = other;
+        }
+        if (v->stands == vertex) continue;
+        s->vertices[v->stands].area += v->area;
+        v->area = 0;
+    }
+    return result;
 }
 
 /* Makes a surface anew, without state. */
@@ -11736,6 +11924,7 @@ static gx_result gxp_make_surface(gx_body *body, gxp_touch_surface *to) {
     if (result == GX_OK) result = gxp_remake_elements(body);
     if (result == GX_OK) result = gxp_mark_fragments(body);
     if (result == GX_OK) result = gxp_copy_samples(body, to);
+    if (result == GX_OK) result = gxp_choose_samples(body, to);
     gxp_release_skin(body);
     body->skin = own;
     return result;
@@ -11802,13 +11991,15 @@ static gx_result gxp_push_state(gx_body *body, gxp_touch_surface *to, const gxp_
     return GX_OK;
 }
 
-/* Adds a share of the states of a vertex to those of the last vertex of another surface. */
-static gx_result gxp_add_states(gx_body *body, const gxp_touch_surface *from, uint32_t vertex, double share,
-                                gxp_touch_surface *to, uint32_t last) {
-    uint32_t i = gxp_first_state(from, vertex), at;
+/* Adds a share of the states of a sample to those of the last one of another surface: of its states on pieces, or of
+   those on colliders. */
+static gx_result gxp_add_states(gx_body *body, const gxp_touch_surface *from, uint32_t sample, int colliders,
+                                double share, gxp_touch_surface *to, uint32_t last) {
+    uint32_t i = gxp_first_state(from, sample), at;
     int k;
-    for (; i < from->state_count && from->states[i].sample == vertex && share > 0; i++) {
+    for (; i < from->state_count && from->states[i].sample == sample && share > 0; i++) {
         const gxp_touch_state *state = &from->states[i];
+        if ((state->other != GXP_NONE) != colliders) continue;
         for (at = to->state_count;
              at > 0 && to->states[at - 1].sample == last && to->states[at - 1].other != state->other;)
             at--;
@@ -11828,38 +12019,59 @@ static gx_result gxp_add_states(gx_body *body, const gxp_touch_surface *from, ui
     return GX_OK;
 }
 
-/* The facets of an element: a part of `order`, which is sorted by elements. Nothing of it is owned. */
+/* The facets of an element: a part of `order`, which has facets, sorted by elements. Nothing of it is owned. */
 static gxp_keys gxp_facets_of(const gxp_keys *order, uint32_t element) {
     gxp_keys part;
     const uint32_t first = gxp_first_key(order, (uint64_t)element << 32);
     uint32_t end;
     for (end = first; end < order->count && GXP_FIRST(order->data[end]) == element;) end++;
-    part.data = order->data != NULL ? order->data + first : NULL;
+    part.data = order->data + first;
     part.count = part.capacity = end - first;
     return part;
 }
 
-/* The states of vertices go from one surface to another. Vertices that are in both keep theirs, bit for bit; others
-   get a mean of the facet that they are on. places: vertices of `from` by hashes of their places; elements: its facets
-   by element */
+/* Adds a share of what a surface presses with, where a vertex of another one is, to the last sample of that other one:
+   on pieces, or on colliders. Between vertices it is a mean of the facet there. places: vertices of `from` by hashes of
+   their places; elements: its facets by element */
+static gx_result gxp_carry_vertex(gx_body *body, const gxp_touch_surface *from, const gxp_keys *places,
+                                  const gxp_keys *elements, const gxp_touch_vertex *v, int colliders, double share,
+                                  gxp_touch_surface *to, uint32_t last) {
+    const uint32_t same = gxp_same_sample(from, places, v);
+    gx_result result = GX_OK;
+    double shares[3] = {0, 0, 0};
+    gxp_keys facets;
+    uint32_t facet;
+    int n;
+    if (same != GXP_NONE)
+        return gxp_add_states(body, from, colliders ? same : from->vertices[same].stands, colliders, share, to, last);
+    facets = gxp_facets_of(elements, v->element);
+    facet = gxp_facet_at(from, &facets, v->rest, v->normal, v->size, shares);
+    for (n = 0; n < 3 && facet != GXP_NONE && result == GX_OK; n++) {
+        const uint32_t corner = from->facets[facet].vertex[n];
+        result = gxp_add_states(body, from, colliders ? corner : from->vertices[corner].stands, colliders,
+                                share * shares[n], to, last);
+    }
+    return result;
+}
+
+/* The states of vertices go from one surface to another. Samples get the mean over the vertices for which they stand,
+   so that forces stay; those that stand for the same as before keep theirs, bit for bit. */
 static gx_result gxp_carry_vertices(gx_body *body, const gxp_touch_surface *from, const gxp_keys *places,
                                     const gxp_keys *elements, gxp_touch_surface *to) {
-    uint32_t i, n;
-    gx_result result = GX_OK;
+    gxp_keys *members = &body->touch.members;
+    uint32_t i, next = 0;
+    gx_result result;
+    members->count = 0;
+    result = gxp_keys_room(body, members, 2 * (size_t)to->vertex_count);
+    for (i = 0; i < to->vertex_count && result == GX_OK; i++)
+        members->data[members->count++] = (uint64_t)to->vertices[i].stands << 32 | i;
+    if (result == GX_OK) result = gxp_sort_keys(body, members, 0, members->count);
     for (i = 0; i < to->vertex_count && result == GX_OK; i++) {
-        const gxp_touch_vertex *v = &to->vertices[i];
-        const uint32_t same = gxp_same_sample(from, places, v);
-        double share[3] = {0, 0, 0};
-        gxp_keys facets;
-        uint32_t facet;
-        if (same != GXP_NONE) {
-            result = gxp_add_states(body, from, same, 1, to, i);
-            continue;
+        for (; next < members->count && GXP_FIRST(members->data[next]) == i && result == GX_OK; next++) {
+            const gxp_touch_vertex *v = &to->vertices[GXP_SECOND(members->data[next])];
+            result = gxp_carry_vertex(body, from, places, elements, v, 0, v->given / to->vertices[i].area, to, i);
         }
-        facets = gxp_facets_of(elements, v->element);
-        facet = gxp_facet_at(from, &facets, v->rest, v->normal, v->size, share);
-        for (n = 0; n < 3 && facet != GXP_NONE && result == GX_OK; n++)
-            result = gxp_add_states(body, from, from->facets[facet].vertex[n], share[n], to, i);
+        if (result == GX_OK) result = gxp_carry_vertex(body, from, places, elements, &to->vertices[i], 1, 1, to, i);
     }
     return result;
 }
@@ -12139,15 +12351,13 @@ static gx_result gxp_list_sample(gx_body *body, uint32_t sample, uint32_t collid
 /* Lists the samples of a facet: its corners, each with a third of its area, or the facet, which has many. */
 static gx_result gxp_list_samples(gx_body *body, const gxp_touch_surface *s, double dt, uint32_t facet,
                                   uint32_t collider, int *wild) {
-    static const uint32_t corner[3] = {0, 1, 2};
     const gxp_touch_facet *f = &s->facets[facet];
     const gx_collider *c = &body->touch.colliders[collider];
     const uint32_t parts = c->kind == GX_COLLIDER_PLANE ? 1 : gxp_facet_parts(body, s, dt, facet, c, wild);
-    double x[9], n[3], area;
+    double n[3], area;
     gx_result result = GX_OK;
     int k;
-    for (k = 0; k < 3; k++) memcpy(x + 3 * k, s->vertices[f->vertex[k]].rest, 3 * sizeof *x);
-    gxp_triangle_normal(x, corner, n);
+    gxp_facet_normal(s, f, n);
     area = 0.5 * sqrt(gxp_dot(n, n));
     if (parts > 1) return gxp_list_sample(body, s->vertex_count + facet, collider, parts, area);
     for (k = 0; k < 3 && parts == 1 && result == GX_OK; k++)
@@ -12165,9 +12375,11 @@ static gx_result gxp_list_beside(gx_body *body, const gxp_touch_surface *s, doub
     stack[count++] = 0;
     while (count > 0 && result == GX_OK) {
         const uint32_t box = stack[--count];
-        const gxp_bounds *b = &t->boxes[box];
+        gxp_bounds around = t->boxes[box].from;
+        const gxp_bounds *b = &around;
         double x[3], own[3], normal[3], half = 0, far, d;
         int k;
+        gxp_add_bounds(&around, &t->boxes[box].to);
         if (b->low[0] > b->high[0]) continue;
         for (k = 0; k < 3; k++) {
             x[k] = 0.5 * (b->low[k] + b->high[k]) - c->pose[4 * k + 3];
@@ -12263,6 +12475,8 @@ static gx_result gxp_take_colliders(gx_body *body, const gx_step_desc *desc, gx_
     gx_result result = GX_OK;
     uint32_t i;
     t->colliders = desc->colliders;
+    t->filter = desc->contact_filter;
+    t->filter_user = desc->contact_filter_user;
     t->collider_count = t->named.count = t->changed.count = 0;
     if (count == 0) return GX_OK;
     if (desc->colliders == NULL) return gxp_refuse(failure, "colliders");
@@ -12364,32 +12578,48 @@ static void gxp_move_surface(gx_body *body, const gxp_touch_surface *s) {
     }
 }
 
-/* Adds the way of a vertex within the step to a box. */
-static void gxp_add_way(const double *moved, double dt, gxp_bounds *box) {
+/* Adds a point or a direction to bounds. */
+static void gxp_add_to_bounds(const double *x, gxp_bounds *box) {
     int k;
     for (k = 0; k < 3; k++) {
-        const double from = moved[k], to = moved[k] + dt * moved[3 + k];
-        const double low = from < to ? from : to, high = from < to ? to : from;
-        box->low[k] = low < box->low[k] ? low : box->low[k];
-        box->high[k] = high > box->high[k] ? high : box->high[k];
+        box->low[k] = x[k] < box->low[k] ? x[k] : box->low[k];
+        box->high[k] = x[k] > box->high[k] ? x[k] : box->high[k];
     }
 }
 
-/* Fits the boxes to the ways of the facets. */
+/* Where a vertex is at the step's end if nothing changes its velocity */
+static void gxp_vertex_end(const double *moved, double dt, double end[3]) {
+    int k;
+    for (k = 0; k < 3; k++) end[k] = moved[k] + dt * moved[3 + k];
+}
+
+/* Fits the boxes to the facets. */
 static void gxp_fit_facets(gx_body *body, const gxp_touch_surface *s, double dt) {
     gxp_touch *t = &body->touch;
     uint32_t i, j;
     int n;
     for (i = 2 * t->leaf_count - 1; i-- > 0;) {
-        gxp_empty_bounds(&t->boxes[i]);
-        if (i + 1 < t->leaf_count) {
-            gxp_add_bounds(&t->boxes[i], &t->boxes[2 * i + 1]);
-            gxp_add_bounds(&t->boxes[i], &t->boxes[2 * i + 2]);
-            continue;
+        gxp_touch_box *box = &t->boxes[i];
+        gxp_empty_bounds(&box->from);
+        gxp_empty_bounds(&box->to);
+        gxp_empty_bounds(&box->normals);
+        for (j = 2 * i + 1; j <= 2 * i + 2 && i + 1 < t->leaf_count; j++) {
+            gxp_add_bounds(&box->from, &t->boxes[j].from);
+            gxp_add_bounds(&box->to, &t->boxes[j].to);
+            gxp_add_bounds(&box->normals, &t->boxes[j].normals);
         }
+        if (i + 1 < t->leaf_count) continue;
         for (j = GXP_TOUCH_LEAF * (i + 1 - t->leaf_count);
-             j < GXP_TOUCH_LEAF * (i + 2 - t->leaf_count) && j < s->facet_count; j++)
-            for (n = 0; n < 3; n++) gxp_add_way(t->moved + 9 * (size_t)s->facets[j].vertex[n], dt, &t->boxes[i]);
+             j < GXP_TOUCH_LEAF * (i + 2 - t->leaf_count) && j < s->facet_count; j++) {
+            gxp_add_to_bounds(t->facing + 3 * (size_t)j, &box->normals);
+            for (n = 0; n < 3; n++) {
+                const double *x = t->moved + 9 * (size_t)s->facets[j].vertex[n];
+                double end[3];
+                gxp_vertex_end(x, dt, end);
+                gxp_add_to_bounds(x, &box->from);
+                gxp_add_to_bounds(end, &box->to);
+            }
+        }
     }
 }
 
@@ -12397,18 +12627,55 @@ static void gxp_fit_facets(gx_body *body, const gxp_touch_surface *s, double dt)
    other, or the vertex was behind the facet. */
 static int gxp_is_thickness(const gxp_touch_surface *s, const gxp_touch_vertex *v, const gxp_touch_facet *f,
                             const double share[3], double reach) {
-    static const uint32_t corner[3] = {0, 1, 2};
-    double x[9], d[3], n[3], unit[3];
+    double d[3], n[3], unit[3];
     int i, k;
-    for (i = 0; i < 3; i++) memcpy(x + 3 * i, s->vertices[f->vertex[i]].rest, 3 * sizeof *x);
     for (k = 0; k < 3; k++) {
         d[k] = v->rest[k];
-        for (i = 0; i < 3; i++) d[k] -= share[i] * x[3 * i + k];
+        for (i = 0; i < 3; i++) d[k] -= share[i] * s->vertices[f->vertex[i]].rest[k];
     }
     if (gxp_dot(d, d) > 4 * reach * reach) return 0;
-    gxp_triangle_normal(x, corner, n);
+    gxp_facet_normal(s, f, n);
     return !gxp_unit(n, unit) || gxp_dot(v->normal, unit) > -GXP_TOUCH_FACING ||
            gxp_dot(d, unit) < -GXP_TOUCH_BEHIND * v->size;
+}
+
+/* How far from a vertex facets that it meets are at most, m */
+static double gxp_touch_slack(const gxp_touch *t, const gxp_touch_vertex *v) {
+    return (t->desc.depth * (1 + GXP_TOUCH_SLANT) + GXP_TOUCH_NEAR + GXP_TOUCH_BESIDE) * v->size;
+}
+
+/* The same of facets that it is in front of, when it comes nearest to them */
+static double gxp_touch_ahead(const gxp_touch_vertex *v) {
+    return (GXP_TOUCH_NEAR * (1 + GXP_TOUCH_SLANT) + GXP_TOUCH_BESIDE) * v->size;
+}
+
+/* The speed at which a vertex comes nearer to a facet, and its height above the plane of it */
+static double gxp_approach_facet(const double *x, const double *const corner[3], const double n[3], double *height) {
+    double approach = 0;
+    int k;
+    for (*height = 0, k = 0; k < 3; k++) {
+        approach -= n[k] * (x[3 + k] - (corner[0][3 + k] + corner[1][3 + k] + corner[2][3 + k]) / 3);
+        *height += n[k] * (x[k] - corner[0][k]);
+    }
+    return approach;
+}
+
+/* May a vertex meet a facet within the step, with a score of at most limit? The quick test before gxp_meets. */
+static int gxp_may_meet(const gxp_touch *t, const gxp_touch_surface *s, double dt, uint32_t vertex, uint32_t facet,
+                        double limit) {
+    const gxp_touch_facet *f = &s->facets[facet];
+    const double *x = t->moved + 9 * (size_t)vertex, *n = t->facing + 3 * (size_t)facet, *corner[3];
+    const double facing = -gxp_dot(x + 6, n), size = s->vertices[vertex].size, bit = 1e-9 * size;
+    double height, approach;
+    int i;
+    if (!(facing > GXP_TOUCH_FACING)) return 0;
+    for (i = 0; i < 3; i++) {
+        if (f->vertex[i] == vertex) return 0;
+        corner[i] = t->moved + 9 * (size_t)f->vertex[i];
+    }
+    approach = gxp_approach_facet(x, corner, n, &height);
+    return height > -t->desc.depth * size - bit && height - dt * fmax(0, approach) < GXP_TOUCH_NEAR * size + bit &&
+           fabs(height) < sqrt(limit) + bit;
 }
 
 /* Does a vertex meet a facet within the step? pair: its vertex and facet are set; receives all else. Where the two come
@@ -12420,17 +12687,11 @@ static int gxp_meets(const gx_body *body, const gxp_touch_surface *s, double dt,
     const double *x = t->moved + 9 * (size_t)pair->sample, *n = t->facing + 3 * (size_t)pair->facet;
     const double facing = -gxp_dot(x + 6, n), *corner[3];
     const double reach = t->desc.depth * fmin(v->size, s->vertices[f->vertex[0]].size);
-    double p[3][3], y[3], d[3], height, time = 0, along;
+    double p[3][3], y[3], d[3], height, time = 0, along, slack;
     int i, k;
-    if (!(facing > GXP_TOUCH_FACING)) return 0;
-    for (i = 0; i < 3; i++) {
-        if (f->vertex[i] == pair->sample) return 0;
-        corner[i] = t->moved + 9 * (size_t)f->vertex[i];
-    }
-    for (pair->approach = height = 0, k = 0; k < 3; k++) {
-        pair->approach -= n[k] * (x[3 + k] - (corner[0][3 + k] + corner[1][3 + k] + corner[2][3 + k]) / 3);
-        height += n[k] * (x[k] - corner[0][k]);
-    }
+    for (i = 0; i < 3; i++) corner[i] = t->moved + 9 * (size_t)f->vertex[i];
+    pair->approach = gxp_approach_facet(x, corner, n, &height);
+    slack = height > 0 ? gxp_touch_ahead(v) : gxp_touch_slack(t, v);
     if (height > 0 && pair->approach > 0) time = height < dt * pair->approach ? height / pair->approach : dt;
     for (i = 0; i < 3; i++)
         for (k = 0; k < 3; k++) p[i][k] = corner[i][k] - x[k] + time * (corner[i][3 + k] - x[3 + k]);
@@ -12445,40 +12706,84 @@ static int gxp_meets(const gx_body *body, const gxp_touch_surface *s, double dt,
     height = gxp_dot(y, n);
     along = sqrt(fmax(0, gxp_dot(y, y) - height * height));
     if (!(pair->gap > -reach * facing) || !(pair->gap - dt * fmax(0, pair->approach) < GXP_TOUCH_NEAR * v->size) ||
-        !(along <= GXP_TOUCH_BESIDE * v->size + GXP_TOUCH_SLANT * fabs(height)))
+        !(along <= GXP_TOUCH_BESIDE * v->size + GXP_TOUCH_SLANT * fabs(height)) || !(gxp_dot(y, y) < slack * slack))
         return 0;
-    pair->score = (along * along + pair->gap * pair->gap) / (facing * facing);
+    pair->score = (gxp_dot(y, y) + pair->gap * pair->gap) / (facing * facing);
     return v->fragment != f->fragment || !gxp_is_thickness(s, v, f, pair->share, reach);
 }
 
-/* Tries one facet; of equal ones the first stays. */
-static void gxp_try_facet(const gx_body *body, const gxp_touch_surface *s, double dt, uint32_t facet,
-                          gxp_touch_pair *best) {
-    gxp_touch_pair pair = *best;
-    pair.facet = facet;
-    if (gxp_meets(body, s, dt, &pair) && (best->facet == GXP_NONE || pair.score < best->score)) *best = pair;
+/* Do two pieces touch, or a piece and a collider, if they meet? */
+static int gxp_is_let(const gxp_touch *t, uint32_t fragment, uint32_t other, uint32_t collider) {
+    return t->filter == NULL || t->filter(t->filter_user, fragment, other, collider);
 }
 
-/* Finds the facet that a vertex meets. best: its vertex is set, its facet is GXP_NONE and stays so if there is none. */
-static void gxp_seek_facet(const gx_body *body, const gxp_touch_surface *s, double dt, gxp_touch_pair *best) {
-    const gxp_touch *t = &body->touch;
-    const double slack =
-        (t->desc.depth * (1 + GXP_TOUCH_SLANT) + GXP_TOUCH_NEAR + GXP_TOUCH_BESIDE) * s->vertices[best->sample].size;
-    uint32_t stack[64], count = 0, i;
-    gxp_bounds way;
+/* Tries one facet; of equal ones the first in the surface's order is taken. */
+static void gxp_try_facet(const gx_body *body, const gxp_touch_surface *s, double dt, uint32_t facet,
+                          gxp_touch_pair *best) {
+    gxp_touch_pair pair;
+    if (!gxp_may_meet(&body->touch, s, dt, best->sample, facet, best->score)) return;
+    if (!gxp_is_let(&body->touch, s->vertices[best->sample].fragment, s->facets[facet].fragment, GXP_NONE)) return;
+    pair = *best;
+    pair.facet = facet;
+    if (gxp_meets(body, s, dt, &pair) &&
+        (pair.score < best->score || (!(pair.score > best->score) && facet < best->facet)))
+        *best = pair;
+}
+
+/* The squared distance of a box from a vertex within the step; GXP_TREE_BEYOND if all its facets face away, or if it is
+   further than ahead, squared, and the vertex is in front of them all. x: position, velocity and normal; end: where it
+   is at the step's end */
+static double gxp_box_gap(const gxp_touch_box *box, const double *x, const double end[3], double ahead) {
+    double facing = 0, square = 0, height = 0;
     int k;
-    gxp_empty_bounds(&way);
-    gxp_add_way(t->moved + 9 * (size_t)best->sample, dt, &way);
-    stack[count++] = 0;
+    for (k = 0; k < 3; k++) {
+        const double below[2] = {x[k] - box->from.high[k], end[k] - box->to.high[k]};
+        const double above[2] = {box->from.low[k] - x[k], box->to.low[k] - end[k]};
+        const double right = below[0] < below[1] ? below[0] : below[1],
+                     left = above[0] < above[1] ? above[0] : above[1];
+        const double gap = right > left ? right : left;
+        facing -= x[6 + k] * (x[6 + k] > 0 ? box->normals.low[k] : box->normals.high[k]);
+        square += gap > 0 ? gap * gap : 0;
+    }
+    if (facing < GXP_TOUCH_FACING * (1 - 1e-9)) return GXP_TREE_BEYOND;
+    for (k = 0; k < 3 && square > ahead; k++) {
+        const double low = x[k] - box->from.high[k], high = x[k] - box->from.low[k];
+        const double one = low * (low < 0 ? box->normals.high[k] : box->normals.low[k]);
+        const double other = high * (high < 0 ? box->normals.high[k] : box->normals.low[k]);
+        height += one < other ? one : other;
+    }
+    return height > 0 ? GXP_TREE_BEYOND : square;
+}
+
+/* Finds the facet that a vertex meets. best: its vertex is set, and a facet to try first; receives the facet, or
+   GXP_NONE. The nearer of two boxes comes first, and what is found leaves out all that is further. */
+static void gxp_seek_facet(const gx_body *body, const gxp_touch_surface *s, double dt, uint32_t first,
+                           gxp_touch_pair *best) {
+    const gxp_touch *t = &body->touch;
+    const gxp_touch_vertex *v = &s->vertices[best->sample];
+    const double *x = t->moved + 9 * (size_t)best->sample, slack = gxp_touch_slack(t, v);
+    const double ahead = gxp_touch_ahead(v) * (1 + 1e-9);
+    double limit = slack * slack, gaps[64], gap[2];
+    uint32_t stack[64], count = 0, i;
+    double end[3];
+    gxp_vertex_end(x, dt, end);
+    if (first != GXP_NONE) gxp_try_facet(body, s, dt, first, best);
+    stack[0] = 0;
+    gaps[count++] = 0;
     while (count > 0) {
         const uint32_t box = stack[--count];
-        const gxp_bounds *b = &t->boxes[box];
-        int apart = 0;
-        for (k = 0; k < 3; k++) apart |= b->low[k] - slack > way.high[k] || b->high[k] + slack < way.low[k];
-        if (apart) continue;
+        const double near = sqrt(best->score) + 1e-9 * v->size;
+        limit = near * near < limit ? near * near : limit;
+        if (gaps[count] > limit) continue;
         if (box + 1 < t->leaf_count) {
-            stack[count++] = 2 * box + 2;
-            stack[count++] = 2 * box + 1;
+            int second;
+            for (i = 0; i < 2; i++) gap[i] = gxp_box_gap(&t->boxes[2 * box + 1 + i], x, end, ahead * ahead);
+            second = gap[1] < gap[0];
+            for (i = 0; i < 2; i++, second = !second)
+                if (gap[!second] <= limit) {
+                    stack[count] = 2 * box + 1 + (uint32_t)!second;
+                    gaps[count++] = gap[!second];
+                }
             continue;
         }
         for (i = GXP_TOUCH_LEAF * (box + 1 - t->leaf_count);
@@ -12493,6 +12798,7 @@ static gxp_touch_pair gxp_no_pair(uint32_t sample) {
     memset(&pair, 0, sizeof pair);
     pair.sample = sample;
     pair.facet = pair.collider = pair.other = GXP_NONE;
+    pair.score = GXP_TREE_ALL;
     return pair;
 }
 
@@ -12608,6 +12914,7 @@ static gx_result gxp_seek_colliders(gx_body *body, const gxp_touch_surface *s, d
              (*next)++)
             area += t->beside[GXP_SECOND(t->order.data[*next])].area;
         pair.area = area;
+        if (!gxp_is_let(t, gxp_sample_vertex(s, sample)->fragment, GXP_NONE, t->colliders[pair.collider].id)) continue;
         result = sample < s->vertex_count ? gxp_seek_at_vertex(body, s, dt, &pair, failure)
                                           : gxp_seek_on_facet(body, s, dt, area, &pair, failure);
     }
@@ -12618,12 +12925,13 @@ static gx_result gxp_seek_colliders(gx_body *body, const gxp_touch_surface *s, d
 static gx_result gxp_seek_pairs(gx_body *body, const gxp_touch_surface *s, double dt, gx_failure *failure) {
     gxp_touch *t = &body->touch;
     gx_result result = gxp_list_all_beside(body, s, dt, failure);
-    uint32_t i, next = 0;
+    uint32_t i, next = 0, *guesses = s->guesses.data;
     const uint32_t state_end = s->state_count > 0 ? s->states[s->state_count - 1].sample + 1 : 0;
     t->found = 0;
     for (i = 0; i < s->vertex_count && result == GX_OK && s->facet_count > 0; i++) {
         gxp_touch_pair best = gxp_no_pair(i);
-        if (s->vertices[i].area > 0) gxp_seek_facet(body, s, dt, &best);
+        if (s->vertices[i].area > 0) gxp_seek_facet(body, s, dt, guesses[i], &best);
+        guesses[i] = best.facet;
         if (best.facet != GXP_NONE) result = gxp_list_pair(body, s, &best, failure);
         if (result == GX_OK && (t->order.count > 0 || i < state_end))
             result = gxp_seek_colliders(body, s, dt, i, &next, failure);
@@ -12921,7 +13229,7 @@ static void gxp_keep_contact(gx_body *body, const gx_step_desc *desc, gxp_touch_
 /* Forgets the surface and its state, not that contact is on. */
 static void gxp_forget_contact(gx_body *body) {
     body->touch.made = 0;
-    body->touch.known_count = 0;
+    body->touch.known_count = body->touch.touching.count = 0;
     body->touch.pressed = 0;
 }
 
@@ -12995,6 +13303,132 @@ GXFEM_API gx_result gx_body_contacts(const gx_body *body, gx_contact *contacts, 
     }
     *count = all;
     return all > capacity ? gxp_fail(failure, GX_ERROR_CAPACITY, "capacity", SIZE_MAX) : gxp_end(failure, GX_OK);
+}
+
+/* >>telling: what touches, for the caller -------------------------------------------------------------------------- */
+/* In: the pairs of the last step, what touched at the caller's last question. Out: events by fragments. Touches what is
+   known of the last question. */
+
+/* The event of a pair, without what touched before */
+static void gxp_describe_pair(const gx_body *body, const gxp_touch_surface *s, uint32_t i, gxp_touch_event *event) {
+    const gxp_touch_pair *pair = &body->touch.pairs[i];
+    const double *force = body->touch.forces + 3 * ((size_t)body->touch.given + i);
+    const uint32_t own = body->snapshot.id[gxp_sample_vertex(s, pair->sample)->fragment];
+    const uint32_t other = pair->facet != GXP_NONE ? body->snapshot.id[s->facets[pair->facet].fragment] : 0;
+    const double load = fmax(0, gxp_dot(force, pair->normal)), side = other != 0 && other < own ? -1 : 1;
+    double x[3];
+    int k;
+    memset(event, 0, sizeof *event);
+    event->who[0] = side < 0 ? other : own;
+    event->who[1] = side < 0 ? own : other;
+    event->who[2] = pair->other;
+    event->contacts = 1;
+    event->load = load;
+    gxp_place_sample(body, s, pair, x);
+    for (k = 0; k < 3; k++) {
+        event->force[k] = own == other ? 0 : side * force[k];
+        event->position[k] = load * x[k];
+        event->normal[k] = side * load * pair->normal[k];
+    }
+}
+
+/* Below 0, 0, above 0: the order of two events */
+static int gxp_compare_touching(const uint32_t *a, const uint32_t *b) {
+    int k;
+    for (k = 0; k < 3; k++)
+        if (a[k] != b[k]) return a[k] < b[k] ? -1 : 1;
+    return 0;
+}
+
+/* Lists what touches now: touch.events, ascending, one for each two. Pairs are in order of their sample, so that those
+   of two pieces are often neighbours. */
+static gx_result gxp_list_touching(gx_body *body, uint32_t *count) {
+    gxp_touch *t = &body->touch;
+    const gxp_touch_surface *s = &t->surfaces[t->current];
+    uint32_t i, at;
+    int k;
+    *count = 0;
+    for (i = 0; i < t->kept && t->made; i++) {
+        gxp_touch_event one;
+        uint32_t low = 0, high = *count;
+        gx_result result;
+        if (!(t->pairs[i].pressed > 0)) continue;
+        gxp_describe_pair(body, s, i, &one);
+        while (low < high) {
+            const uint32_t middle = low + (high - low) / 2;
+            if (gxp_compare_touching(t->events[middle].who, one.who) < 0)
+                low = middle + 1;
+            else
+                high = middle;
+        }
+        at = low;
+        if (at < *count && gxp_compare_touching(t->events[at].who, one.who) == 0) {
+            t->events[at].contacts++;
+            t->events[at].load += one.load;
+            for (k = 0; k < 3; k++) {
+                t->events[at].force[k] += one.force[k];
+                t->events[at].position[k] += one.position[k];
+                t->events[at].normal[k] += one.normal[k];
+            }
+            continue;
+        }
+        result = gxp_reserve(&body->config.allocator, &t->events, sizeof *t->events, *count, &t->event_capacity, 1);
+        if (result != GX_OK) return result;
+        memmove(t->events + at + 1, t->events + at, (*count - at) * sizeof *t->events);
+        t->events[at] = one;
+        (*count)++;
+    }
+    return GX_OK;
+}
+
+/* An event as the caller takes it. was: it touched at the last call; now NULL: it does not any more */
+static void gxp_tell_event(const gxp_touch_event *now, const uint32_t *was, gx_contact_event *to) {
+    int k;
+    memset(to, 0, sizeof *to);
+    to->change = now == NULL ? GX_CONTACT_ENDED : was != NULL ? GX_CONTACT_PERSISTS : GX_CONTACT_BEGAN;
+    if (now != NULL) was = now->who;
+    to->fragment = was[0];
+    to->other = was[1];
+    to->collider = was[2];
+    if (now == NULL) return;
+    to->contacts = now->contacts;
+    to->load = now->load;
+    memcpy(to->force, now->force, sizeof to->force);
+    for (k = 0; k < 3; k++) to->position[k] = now->load > 0 ? now->position[k] / now->load : 0;
+    (void)gxp_unit(now->normal, to->normal);
+}
+
+GXFEM_API gx_result gx_body_contact_events(gx_body *body, gx_contact_event *events, size_t capacity, size_t *count,
+                                           gx_failure *failure) {
+    gxp_touch *t;
+    size_t all = 0;
+    uint32_t now, i = 0, j = 0;
+    gx_result result;
+    if (body == NULL) return gxp_refuse(failure, "body");
+    if (count == NULL) return gxp_refuse(failure, "count");
+    if (events == NULL && capacity > 0) return gxp_refuse(failure, "events");
+    *count = 0;
+    t = &body->touch;
+    if (!t->on || (t->made && t->hash != body->cuts.hash))
+        return gxp_fail(failure, GX_ERROR_SEQUENCE, t->on ? "gx_body_step" : "gx_body_contact", SIZE_MAX);
+    if (body->snapshot.stale) return gxp_fail(failure, GX_ERROR_SEQUENCE, "gx_body_view", SIZE_MAX);
+    result = gxp_list_touching(body, &now);
+    if (result == GX_OK)
+        result = gxp_words_room(body, &t->touching, 3 * now > t->touching.count ? 3 * now - t->touching.count : 0);
+    if (gxp_end(failure, result) != GX_OK) return result;
+    while (i < now || 3 * j < t->touching.count) {
+        const uint32_t *was = 3 * j < t->touching.count ? t->touching.data + 3 * (size_t)j : NULL;
+        const int order = i == now ? 1 : was == NULL ? -1 : gxp_compare_touching(t->events[i].who, was);
+        if (all < capacity) gxp_tell_event(order <= 0 ? &t->events[i] : NULL, order >= 0 ? was : NULL, &events[all]);
+        all++;
+        i += order <= 0;
+        j += order >= 0;
+    }
+    *count = all;
+    if (all > capacity) return gxp_fail(failure, GX_ERROR_CAPACITY, "capacity", SIZE_MAX);
+    for (i = 0; i < now; i++) memcpy(t->touching.data + 3 * (size_t)i, t->events[i].who, 3 * sizeof(uint32_t));
+    t->touching.count = 3 * now;
+    return GX_OK;
 }
 
 /* >>step: time steps ----------------------------------------------------------------------------------------------- */
@@ -13220,11 +13654,6 @@ static gx_result gxp_cell_at(gx_body *body, uint32_t element, const double rest[
     *cell = GXP_NONE;
     if (result == GX_OK && gxp_is_kept(body, leaf)) *cell = body->leaves.data[leaf].cell;
     return result;
-}
-
-static double gxp_square_distance(const double *a, const double *b) {
-    const double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-    return gxp_dot(d, d);
 }
 
 /* The point of a segment nearest to p: *share of the way from a to b. Returns the squared distance. */
@@ -15593,11 +16022,32 @@ static gx_result gxp_list_owners(gx_blade *blade, uint32_t layer, const double *
     return result == GX_OK ? gxp_push(blade->body, &blade->owned_starts, blade->owned.count) : result;
 }
 
+/* The edge of the last move was not in this layer then. If a place of it is in its material now, the layer has moved
+   over it: that part of the front begins at the present places of the edge where those are in the air. */
+static gx_result gxp_begin_in_air(gx_blade *blade, uint32_t layer, const double *edge, uint32_t count) {
+    gxp_front_list *before = &blade->samples;
+    uint32_t i, first, end;
+    gx_result result = GX_OK;
+    for (first = 0; first < before->count && blade->now.edge.count > 0 && result == GX_OK; first = end) {
+        int inside = 0;
+        for (end = first; end < before->count && (end == first || !before->data[end - 1].gap); end++)
+            inside |= !(before->data[end].distance > 0);
+        for (i = first; i < end && inside && result == GX_OK; i++) {
+            gxp_front_vertex at;
+            result = gxp_see(blade, layer, edge, count, before->data[i].along, NULL, &at);
+            at.gap = before->data[i].gap;
+            if (at.distance > 0) before->data[i] = at;
+        }
+    }
+    return result;
+}
+
 /* Where no owner's front is, the edge of the last move is the layer's. */
 static gx_result gxp_list_before(gx_blade *blade, uint32_t layer, const double *before, const double *edge,
                                  uint32_t count) {
     gx_result result = gxp_copy_front(blade->body, &blade->advanced, &blade->samples);
     if (result == GX_OK) result = gxp_see_edge(blade, layer, before, count);
+    if (result == GX_OK) result = gxp_begin_in_air(blade, layer, edge, count);
     blade->owned_starts.count--;
     if (result == GX_OK)
         result = gxp_list_owned(blade, layer, 0, blade->samples.data, blade->samples.count, edge, count);
@@ -18176,7 +18626,7 @@ static void gxp_require_true(gxb_stream *s, int holds) {
 }
 static void gxp_pass_word(gxb_stream *s, uint32_t *word) { gxb_stream_pass(s, word, 1, sizeof *word); }
 
-#define GXP_SAVE_VERSION 11u /* raised by every change of the format */
+#define GXP_SAVE_VERSION 12u /* raised by every change of the format */
 #define GXP_BYTE_ORDER   0x01020304u
 
 typedef struct gxp_head {
@@ -18822,6 +19272,7 @@ static void gxp_drop_blades(gx_body *body, uint32_t count) {
 typedef struct gxp_state_counts {
     uint32_t rows[GXP_TABLES], history, struck;
     uint32_t contact, pressing, known; /* 1: contact is on; its states; the colliders of the last step */
+    uint32_t touching;                 /* words of what touched */
     int affine;                        /* there may be affine copies: the saved mesh tells */
 } gxp_state_counts;
 
@@ -18837,6 +19288,7 @@ static void gxp_pass_state_counts(gxb_stream *s, gxp_state_counts *n) {
     gxp_pass_word(s, &n->contact);
     gxp_pass_word(s, &n->pressing);
     gxp_pass_word(s, &n->known);
+    gxp_pass_word(s, &n->touching);
 }
 
 static gxp_state_counts gxp_count_state(const gx_body *body) {
@@ -18848,6 +19300,7 @@ static gxp_state_counts gxp_count_state(const gx_body *body) {
     n.contact = (uint32_t)body->touch.on;
     n.pressing = body->touch.on && body->touch.made ? body->touch.surfaces[body->touch.current].state_count : 0;
     n.known = body->touch.on ? body->touch.known_count : 0;
+    n.touching = body->touch.on ? body->touch.touching.count : 0;
     return n;
 }
 
@@ -18864,6 +19317,9 @@ static gx_result gxp_contact_room(gx_body *body, const gxp_state_counts *n) {
     gxp_touch_surface *to = &t->surfaces[gxp_arriving_surface(body)];
     gx_result result = gxp_reserve(a, &to->states, sizeof *to->states, to->state_count, &to->state_capacity,
                                    n->pressing > to->state_count ? n->pressing - to->state_count : 0);
+    if (result == GX_OK)
+        result =
+            gxp_words_room(body, &t->touching, n->touching > t->touching.count ? n->touching - t->touching.count : 0);
     return result == GX_OK ? gxp_reserve(a, &t->known, sizeof *t->known, t->known_count, &t->known_capacity,
                                          n->known > t->known_count ? n->known - t->known_count : 0)
                            : result;
@@ -18883,6 +19339,7 @@ static void gxp_pass_contact(gxb_stream *s, gx_body *body, const gxp_state_count
         t->hash = body->cuts.hash;
         t->on = (int)n->contact;
         t->known_count = n->known;
+        t->touching.count = n->touching;
         t->surfaces[arriving].state_count = n->pressing;
         t->kept = 0;
         t->pressed = 0;
@@ -18900,6 +19357,7 @@ static void gxp_pass_contact(gxb_stream *s, gx_body *body, const gxp_state_count
         gxp_pass_word(s, &t->known[i].id);
         gxb_stream_pass(s, &t->known[i].hash, 1, sizeof t->known[i].hash);
     }
+    for (i = 0; i < n->touching; i++) gxp_pass_word(s, &t->touching.data[i]);
     for (i = 0; i < n->pressing; i++) {
         gxp_touch_state *state = &to->states[i];
         gxp_pass_word(s, &state->sample);
@@ -19009,9 +19467,11 @@ static void gxp_check_contact(gxb_stream *s, const gx_body *body, const gxp_stat
     uint32_t i;
     int k;
     if (!n->contact) return;
-    gxp_require_true(s, body->copies.affine == NULL && numbers[0] > 0 && numbers[4] > 0);
+    gxp_require_true(s, numbers[0] > 0 && numbers[4] > 0);
     for (i = 0; i < 5; i++) gxp_require_true(s, gxp_is_finite(numbers[i]) && numbers[i] >= 0);
     for (i = 1; i < n->known; i++) gxp_require_true(s, t->known[i - 1].id < t->known[i].id);
+    for (i = 3; i < n->touching; i += 3)
+        gxp_require_true(s, gxp_compare_touching(t->touching.data + i - 3, t->touching.data + i) < 0);
     for (i = 0; i < n->pressing; i++) {
         const gxp_touch_state *state = &own->states[i];
         gxp_require_true(s, i == 0 || own->states[i - 1].sample <= state->sample);
@@ -19034,9 +19494,11 @@ static void gxp_load_state(gxb_stream *s, gx_body *body, int trusted) {
     gxp_pass_state_counts(s, &n);
     gxp_check_counts(s, gxp_state_use(&n), n.rows);
     gxp_require_true(s, n.rows[GXP_COPIES] == body->copies.count && n.history <= 1 && n.struck <= 1 && n.contact <= 1 &&
-                            (n.contact || (n.pressing == 0 && n.known == 0)));
+                            (n.contact || (n.pressing == 0 && n.known == 0 && n.touching == 0)));
+    gxp_require_true(s, n.touching % 3 == 0);
     gxb_stream_has(s, n.pressing, 2 * sizeof(uint32_t) + 7 * sizeof(double));
     gxb_stream_has(s, n.known, sizeof(uint32_t) + sizeof(uint64_t));
+    gxb_stream_has(s, n.touching, sizeof(uint32_t));
     if (s->result == GX_OK) gxp_require(s, gxp_state_room(body, &n));
     if (s->result == GX_OK) gxp_pass_state(s, body, &n);
     if (s->result == GX_OK && !trusted) gxp_check_state(s, body, &n);
@@ -19282,6 +19744,9 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_SEARCH_MARGIN
 #undef GXP_TOUCH_CREASE
 #undef GXP_TOUCH_LEAF
+#undef GXP_TOUCH_EVEN
+#undef GXP_TOUCH_APART
+#undef GXP_TOUCH_SHARE
 #undef GXP_TOUCH_FACING
 #undef GXP_TOUCH_NEAR
 #undef GXP_TOUCH_ADVANCES

@@ -857,6 +857,13 @@ GXFEM_API gx_result gxb_boolean_set_retained(gxb_boolean *boolean, int retained,
 /* Copies an operand. Errors: ARGUMENT, EMPTY, INDEX (triangle), NOT_FINITE and RANGE (vertex), NOT_CLOSED (triangle),
  * LIMIT, MEMORY. */
 GXFEM_API gx_result gxb_boolean_add(gxb_boolean *boolean, const gxb_operand *operand, gx_failure *failure);
+/* Takes an operand out, by its index in the order in which operands were added. The result is that of the other ones:
+ * the same solid as that of a Boolean without it. Indices stay. An operand that moves is taken out and added anew, as
+ * the last one. What it has divided stays divided, and vertices there may name it, unless the result is coarse; its
+ * triangles go on to take memory, and time where new operands meet them. An evaluation then looks only at what the box
+ * of the operand meets, or at all if it was the first one or an intersection. Errors: ARGUMENT, INDEX (no such operand,
+ * or it is out already), MEMORY, LIMIT. */
+GXFEM_API gx_result gxb_boolean_remove(gxb_boolean *boolean, uint32_t operand, gx_failure *failure);
 /* The result of all operands so far. Errors: ARGUMENT, SEQUENCE (no operand), MEMORY, LIMIT, OVERLAP (a surface vouched
  * for as simple is not). After an error the Boolean keeps its operands and can be evaluated again. */
 GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *boolean, gxb_boolean_result *result, gx_failure *failure);
@@ -3078,7 +3085,7 @@ static void gxbp_save(gxb_complex *cx, uint32_t array, uint32_t index) {
 
 /* Copies a list of the pool behind those already copied. */
 static void gxbp_move_list(const gxb_complex *cx, uint32_t *pool, uint32_t *used, uint32_t *list, uint32_t count) {
-    if (count > 0) memcpy(pool + *used, cx->pool + *list, count * sizeof *pool);
+    memcpy(pool + *used, cx->pool + *list, count * sizeof *pool);
     *list = *used;
     *used += count;
 }
@@ -8066,6 +8073,7 @@ typedef struct gxbp_operand {
     uint32_t simple;   /* vouched for, or found */
     uint32_t reached;  /* a subtriangle has got a state */
     uint32_t narrowed; /* the last intersection up to this operand, the first operand aside; 0: there is none */
+    uint32_t removed;  /* 1: it takes no part in results */
     uint32_t source, source_count;
     uint32_t bounds; /* of its leaves in gxb_boolean.bounds */
     uint32_t *order; /* sources in the order of the tree's leaves, in memory of its own */
@@ -8085,6 +8093,7 @@ typedef struct gxbp_input {
     uint32_t source_count, source_capacity;
     gxbp_operand *operands;
     uint32_t operand_count, operand_capacity;
+    uint32_t first; /* operand that is not removed; operand_count: there is none */
     /* of each operand's sources, in its tree's order */
     gxbp_leaf_boxes *bounds;
     uint32_t bound_count, bound_capacity;
@@ -11947,7 +11956,8 @@ static GXBP_COLD int gxbp_ask_inside(gxb_boolean *b, const gxbp_state *state) {
         memset(b->winding.vector + b->winding.vector_count, 0, (n - b->winding.vector_count) * sizeof(int32_t));
         b->winding.vector_count = n;
     }
-    for (i = 0; i < state->count; i++) b->winding.vector[numbers[i].operand] = numbers[i].winding;
+    for (i = 0; i < state->count; i++)
+        if (!b->in.operands[numbers[i].operand].removed) b->winding.vector[numbers[i].operand] = numbers[i].winding;
     inside = b->options.inside(b->options.user, b->winding.vector, n) != 0;
     for (i = 0; i < state->count; i++) b->winding.vector[numbers[i].operand] = 0;
     return inside;
@@ -11962,8 +11972,9 @@ static GXBP_COLD int gxbp_apply_operations(const gxb_boolean *b, const gxbp_stat
         const uint32_t i = numbers[k].operand;
         const gxbp_operand *o = &b->in.operands[i];
         const int counts = o->operation == GXB_SPLIT ? 0 : gxbp_counts(o->rule, numbers[k].winding);
+        if (o->removed) continue;
         if (i > next && b->in.operands[i - 1].narrowed >= next) inside = 0;
-        switch (i == 0 && o->operation != GXB_SPLIT ? (uint32_t)GXB_UNION : o->operation) {
+        switch (i == b->in.first && o->operation != GXB_SPLIT ? (uint32_t)GXB_UNION : o->operation) {
         case GXB_UNION: inside = inside || counts; break;
         case GXB_INTERSECTION: inside = inside && counts; break;
         case GXB_DIFFERENCE: inside = inside && !counts; break;
@@ -12529,13 +12540,12 @@ static int gxbp_is_surface(const gxb_boolean *b, uint32_t f) {
 
 /* --- states of earlier evaluations: new operands get the number 0, which is right outside of their boxes --- */
 
-/* An operand that is an intersection leaves nothing outside of it. */
-static void gxbp_note_intersections(gxb_boolean *b) {
-    uint32_t i = b->winding.stated;
+/* An operand that is an intersection leaves nothing outside of it. Operands before i are noted. */
+static void gxbp_note_intersections(gxb_boolean *b, uint32_t i) {
     for (; i < b->in.operand_count; i++) {
         gxbp_operand *o = &b->in.operands[i];
         const uint32_t before = i > 0 ? b->in.operands[i - 1].narrowed : 0;
-        o->narrowed = i > 0 && o->operation == GXB_INTERSECTION ? i : before;
+        o->narrowed = i > b->in.first && o->operation == GXB_INTERSECTION && !o->removed ? i : before;
     }
 }
 
@@ -12888,7 +12898,7 @@ static GXBP_APART void gxbp_find_states(gxb_boolean *b) {
         memset(b->winding.steps, 0, sizeof b->winding.steps);
         b->winding.state_count = b->winding.number_count = b->winding.listed = 0;
     }
-    gxbp_note_intersections(b);
+    gxbp_note_intersections(b, b->winding.stated);
     for (s = b->winding.stated; s < b->in.operand_count; s++) b->in.operands[s].reached = 0;
     b->winding.unreached = b->in.operand_count - b->winding.stated;
     if (b->winding.stated > 0) gxbp_close_states(b);
@@ -13028,15 +13038,19 @@ static uint32_t gxbp_out_vertex(gxb_boolean *b, uint32_t *vertex, uint32_t point
     return vertex[point] = b->out.point_count++;
 }
 
+/* Is the source one of a sheet (sheets 1) or of a closed surface, and not removed? */
+static int gxbp_takes_part(const gxb_boolean *b, uint32_t s, int sheets) {
+    const gxbp_operand *o = &b->in.operands[b->in.sources[s].operand];
+    return (o->operation == GXB_SPLIT) == sheets && !o->removed;
+}
+
 /* A source that covers a subtriangle: one of a sheet (sheets 1) or of a closed surface. GXB_NONE: there is none. */
 static uint32_t gxbp_cover_of(const gxb_boolean *b, uint32_t f, int sheets) {
     const uint32_t r = b->mesh.subtriangles[f].source;
     uint32_t c;
-    if (b->mesh.subtriangles[f].covers == GXB_NONE)
-        return (b->in.operands[b->in.sources[r].operand].operation == GXB_SPLIT) == sheets ? r : GXB_NONE;
+    if (b->mesh.subtriangles[f].covers == GXB_NONE) return gxbp_takes_part(b, r, sheets) ? r : GXB_NONE;
     for (c = b->mesh.subtriangles[f].covers; c != GXB_NONE; c = b->mesh.links[c].next)
-        if ((b->in.operands[b->in.sources[b->mesh.links[c].value].operand].operation == GXB_SPLIT) == sheets)
-            return b->mesh.links[c].value;
+        if (gxbp_takes_part(b, b->mesh.links[c].value, sheets)) return b->mesh.links[c].value;
     return GXB_NONE;
 }
 
@@ -13411,13 +13425,22 @@ static void gxbp_drop_old(gxb_boolean *b, uint32_t f) {
     }
 }
 
+/* Does a triangle of the subtriangle bear the name of an operand that was removed? */
+static int gxbp_names_removed(const gxb_boolean *b, uint32_t f) {
+    const uint32_t *place = b->kept.places + 2 * (size_t)f;
+    int side;
+    for (side = 0; side < 2; side++)
+        if (place[side] != GXB_NONE && b->in.operands[b->out.operands[place[side]]].removed) return 1;
+    return 0;
+}
+
 /* Makes the result show what a subtriangle shows now. A triangle that stays bears another name where the other side has
    appeared or gone: a sheet's, or a closed surface's. */
 static void gxbp_show_again(gxb_boolean *b, uint32_t f, gxbp_judgement *last) {
     const uint32_t now = gxbp_judge_subtriangle(b, f, last), before = b->out.shown[f];
     uint32_t source;
     int side;
-    if (now == before) return;
+    if (now == before && !gxbp_names_removed(b, f)) return;
     source = gxbp_cover_of(b, f, now == (GXBP_SHOWS | GXBP_SHOWS_BACK));
     for (side = 0; side < 2; side++) {
         const uint32_t bit = side ? GXBP_SHOWS_BACK : GXBP_SHOWS, t = b->kept.places[2 * f + (uint32_t)side];
@@ -14984,6 +15007,37 @@ GXFEM_API gx_result gxb_boolean_add(gxb_boolean *b, const gxb_operand *operand, 
         b->out.evaluated = 0;
     return result == GX_OK ? gxbp_end(failure, GX_OK)
                            : gxbp_fail(failure, result, gxbp_blamed(result, "vertices", "triangles"), bad);
+}
+
+/* Lists the subtriangles that may show something else without an operand: those that may meet its box. */
+static GXBP_COLD void gxbp_list_near(gxb_boolean *b, const gxbp_box *box) {
+    uint32_t i;
+    b->work.pending_count = 0;
+    gxbp_open_states(b, box);
+    if (b->error == GX_OK && GXBP_ROOM(b, mesh.changed, mesh.changed, b->work.pending_count))
+        for (i = 0; i < b->work.pending_count; i++) b->mesh.changed[b->mesh.changed_count++] = b->work.pending[i];
+    for (i = 0; i < b->work.pending_count; i++) b->mesh.subtriangles[b->work.pending[i]].state &= ~GXBP_OPEN;
+}
+
+GXFEM_API gx_result gxb_boolean_remove(gxb_boolean *b, uint32_t operand, gx_failure *failure) {
+    gxbp_operand *o;
+    uint32_t i;
+    if (b == NULL) return gxbp_refuse(failure, "boolean");
+    if (operand >= b->in.operand_count || b->in.operands[operand].removed)
+        return gxbp_fail(failure, GX_ERROR_INDEX, "operand", operand);
+    o = &b->in.operands[operand];
+    b->error = GX_OK;
+    b->budget.over_limit = 0;
+    if (b->out.shown_count > 0) gxbp_list_near(b, gxbp_operand_box(b, operand));
+    if (b->error != GX_OK) return gxbp_end(failure, b->error);
+    /* without an intersection or the first operand, the result may differ anywhere */
+    if (operand == b->in.first || o->operation == GXB_INTERSECTION) b->out.judged = 0;
+    o->removed = 1;
+    while (b->in.first < b->in.operand_count && b->in.operands[b->in.first].removed) b->in.first++;
+    gxbp_note_intersections(b, 0);
+    for (i = 0; i < b->winding.state_count; i++) b->winding.states[i].known = 0;
+    b->out.evaluated = 0;
+    return gxbp_end(failure, GX_OK);
 }
 
 /* After an error: operands are as they were added, and nothing is arranged. Computed points stay known. */

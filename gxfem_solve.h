@@ -1857,6 +1857,7 @@ typedef struct gxsp_problem {
     int exact;          /* the linearisation is not projected */
     int indefinite;     /* conjugate gradients met negative curvature */
     int projected_only; /* the exact linearisation has proved indefinite in this step */
+    uint32_t added;     /* Newton iterations beside those of the step's description */
     int shortened;      /* the line search did not take the whole step */
     int damps;          /* damping adds to the load */
     int stalls;         /* consecutive iterations that noise ended and that gained next to nothing */
@@ -11419,9 +11420,10 @@ static int gxsp_find_direction(gxsp_problem *problem) {
 /* Does Newton's method continue? If not, report.stop says why. before: the residual an iteration ago */
 static int gxsp_continues(gxsp_problem *problem, double before) {
     const gxs_step_desc *step = problem->step;
-    const uint32_t budget = step->newton_iterations ? step->newton_iterations
-                          : gxsp_settles(problem)   ? GXSP_SHEETS_MOST
-                                                    : 1,
+    const uint32_t budget = (step->newton_iterations ? step->newton_iterations
+                             : gxsp_settles(problem) ? GXSP_SHEETS_MOST
+                                                     : 1) +
+                            problem->added,
                    done = problem->report.newton_iterations;
     const double wanted = step->newton_tolerance > 0 ? step->newton_tolerance : 1e-8,
                  goal = wanted > GXSP_ROUNDING ? wanted : GXSP_ROUNDING;
@@ -11568,8 +11570,11 @@ static gx_result gxsp_minimise(gxsp_problem *problem) {
     gxsp_limit_energies(problem, gxsp_trial(system), 1);
     if (system->state.base_known && problem->step->integrator != GXS_MIDPOINT && gxsp_count_risen(system) == 0)
         return GX_OK; /* lower than base even without the kinetic energy that staying there would take */
-    if (gxsp_bring_down(problem) > 0) result = gxsp_newton(problem);
-    return result;
+    if (gxsp_bring_down(problem) == 0) return GX_OK;
+    /* Under pairs one iteration from where inertia leads often ends above base, as friction sticks there. Without
+     * another one, from base, whole piles would stand still for a step. */
+    problem->added = problem->step->pair_count > 0;
+    return gxsp_newton(problem);
 }
 
 /* >>midpoint: the second half of the midpoint rule, and the end of a step ------------------------------------------ */

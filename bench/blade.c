@@ -19,10 +19,10 @@
                its positions, the step; all: all but the step
    carve       tools in a block that moves calmly
 
-   divided: elements that strips or tools have touched, each as often as it was. leaves: that were added, for each of
-   those. link: the smallest share of a face that still joins two cells. median_ms, p95_ms and worst_ms: of a move, in
-   `frame` of a frame's part, in `carve` of a tool. share: of a step. ns: for each sample. volume_error: the largest,
-   as a share of the volume. */
+   Times are of the processor. divided: elements that strips or tools have touched, each as often as it was. leaves:
+   that were added, for each of those. link: the smallest share of a face that still joins two cells. median_ms, p95_ms
+   and worst_ms: of a move, in `frame` of a frame's part, in `carve` of a tool. share: of a step. ns: for each sample.
+   volume_error: the largest, as a share of the volume. */
 #define _POSIX_C_SOURCE 200112L
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
@@ -66,7 +66,7 @@ static stage open_stage(uint32_t n, uint64_t seed, double noise, const gx_blade_
     s.cells[0] = s.cells[1] = s.cells[2] = n;
     s.random = seed * 7919;
     s.noise = noise;
-    s.clock = seconds;
+    s.clock = processor_seconds;
     stage_open(&s, 250.0 * n, 0, blade);
     fail("opening", &s);
     return s;
@@ -136,7 +136,7 @@ static void measure_scene(const stage_scene *scene) {
     row r;
     memset(&s, 0, sizeof s);
     s.random = 1;
-    s.clock = seconds;
+    s.clock = processor_seconds;
     stage_play(&s, scene, small ? 6 : 12, NULL);
     fail(scene->name, &s);
     r = row_of("scene", scene->name, &s);
@@ -315,9 +315,9 @@ static void measure_cost(uint32_t n, int frames) {
 }
 
 static double step_ms(stage *s) {
-    const double start = seconds(NULL);
+    const double start = processor_seconds(NULL);
     stage_step(s, s->swing, 0, -9.8);
-    return 1e3 * (seconds(NULL) - start);
+    return 1e3 * (processor_seconds(NULL) - start);
 }
 
 /* A blade that is moved, but far from the body */
@@ -387,9 +387,9 @@ static double locate_points(uint32_t n) {
         }
         stage_pose(&s, &m, (double)k / TIMES);
         check(gx_body_locate(s.body, points, 1, hits, NULL)); /* fits the boxes to the new pose */
-        start = seconds(NULL);
+        start = processor_seconds(NULL);
         check(gx_body_locate(s.body, points, MANY, hits, NULL));
-        times[k] = (seconds(NULL) - start) / MANY;
+        times[k] = (processor_seconds(NULL) - start) / MANY;
     }
     stage_close(&s);
     return median(times, TIMES);
@@ -428,20 +428,20 @@ typedef struct frame_times {
 } frame_times;
 
 static void make_model(stage *s, frame_times *t, int frame) {
-    const double start = seconds(NULL);
+    const double start = processor_seconds(NULL);
     gxs_model model;
     check(gx_body_model(s->body, &model, NULL));
-    t->of[MODEL][frame] = 1e3 * (seconds(NULL) - start);
+    t->of[MODEL][frame] = 1e3 * (processor_seconds(NULL) - start);
 }
 
 static void draw(stage *s, double **positions, frame_times *t, int frame) {
-    const double start = seconds(NULL);
+    const double start = processor_seconds(NULL);
     gx_skin skin;
     check(gx_body_skin(s->body, NULL, &skin, NULL));
     *positions = (double *)realloc(*positions, 3 * skin.vertex_count * sizeof **positions);
     if (*positions == NULL) check(GX_ERROR_MEMORY);
     check(gx_body_skin_positions(s->body, *positions, NULL));
-    t->of[SKIN][frame] = 1e3 * (seconds(NULL) - start);
+    t->of[SKIN][frame] = 1e3 * (processor_seconds(NULL) - start);
 }
 
 static void pass_by_steps(stage *s, uint32_t n, frame_times *t) {
@@ -561,9 +561,9 @@ static void measure_carve(const char *name, uint32_t n, uint32_t round, uint32_t
         surface.vertex_count = placed.vertices;
         surface.triangles = placed.t[0];
         surface.triangle_count = placed.triangles;
-        start = seconds(NULL);
+        start = processor_seconds(NULL);
         check(gx_body_carve(s.body, &surface, &report, NULL));
-        times[i] = 1e3 * (seconds(NULL) - start);
+        times[i] = 1e3 * (processor_seconds(NULL) - start);
         all += times[i];
         touched += report.touched_elements;
         removed += report.removed_volume;

@@ -8,6 +8,10 @@
        W3  a tetrahedron less a wavy slab of 1760 triangles
        W4  a cube less 5 + 5 crossing slabs
        S   a bumpy sphere of 8,000 triangles less a turned copy
+       E   1000 turned cubes, united: one is taken out and one added elsewhere, the result retained; E anew: the cubes
+           that are left, made from nothing
+       chain_N  N of these cubes, united one by one, the result retained and read after each: the whole chain, in time
+           of the processor
        +   after a name: evaluated after each operand
        ?   surfaces are not vouched for as simple; all others are
        2   on two threads; the rows of few triangles have none
@@ -27,12 +31,13 @@
 #include "csv.h"
 #include "helper.h"
 #include "progress.h"
+#include "splitmix.h"
 #include <dirent.h>
 #if defined(__GLIBC__)
 #include <malloc.h>
 #endif
 
-enum { OPERANDS = 64, CALLS = 100000, NAMES = 512, NAME = 64, GENERATED = 4, MANY = 8192 };
+enum { OPERANDS = 64, CALLS = 100000, NAMES = 512, NAME = 64, GENERATED = 6, MANY = 8192, CUBES = 10, EDITS = 200 };
 static const double SECONDS = 0.3;
 
 static size_t done, total; /* workloads */
@@ -51,29 +56,37 @@ typedef struct figures {
 
 static gxb_boolean_desc how; /* of Booleans: with a helper or without */
 
-static figures run(const char *name, const gxb_operand *operands, size_t count, int each, int ask) {
-    gxb_boolean *b = NULL;
-    gxb_boolean_result r;
+/* Of the latest result; ask: of its components, too */
+static figures figures_of(const char *name, gxb_boolean *b, const gxb_boolean_result *r, int ask) {
     gxb_components c;
     gxb_statistics s;
     figures f;
-    size_t i;
-    memset(&r, 0, sizeof r);
     memset(&c, 0, sizeof c);
-    stop_at(name, gxb_boolean_create(&how, &b, NULL));
-    for (i = 0; i < count; i++) {
-        stop_at(name, gxb_boolean_add(b, &operands[i], NULL));
-        if (i + 1 == count || (each && i > 0)) stop_at(name, gxb_boolean_evaluate(b, &r, NULL));
-    }
+    memset(&s, 0, sizeof s);
     if (ask) stop_at(name, gxb_boolean_components(b, &c, NULL));
     stop_at(name, gxb_boolean_statistics(b, &s, NULL));
-    f.triangles = r.triangle_count;
+    f.triangles = r->triangle_count;
     f.components = c.count;
     f.volume = c.total_volume;
     f.filter = s.filter_calls;
     f.exact = s.exact_calls;
     f.allocations = s.allocations;
     f.peak = s.peak_bytes;
+    return f;
+}
+
+static figures run(const char *name, const gxb_operand *operands, size_t count, int each, int ask) {
+    gxb_boolean *b = NULL;
+    gxb_boolean_result r;
+    figures f;
+    size_t i;
+    memset(&r, 0, sizeof r);
+    stop_at(name, gxb_boolean_create(&how, &b, NULL));
+    for (i = 0; i < count; i++) {
+        stop_at(name, gxb_boolean_add(b, &operands[i], NULL));
+        if (i + 1 == count || (each && i > 0)) stop_at(name, gxb_boolean_evaluate(b, &r, NULL));
+    }
+    f = figures_of(name, b, &r, ask);
     gxb_boolean_destroy(b);
     return f;
 }
@@ -132,13 +145,18 @@ static figures time_ways(const char *name, const gxb_operand *operands, size_t c
     return f[1];
 }
 
+/* middle: medians without and with components */
+static void write_row(const char *name, const char *mark, const double middle[2], double least, const figures *f) {
+    csv_row("%s%s,%.1f,%.1f,%lu,%lu,%.17g,%.4f,%.4f,%lu,%lu,%.1f", name, mark, middle[1], least,
+            (unsigned long)f->triangles, (unsigned long)f->components, f->volume, 1 - exact_share(f), exact_share(f),
+            (unsigned long)f->allocations, (unsigned long)f->peak, middle[0]);
+    keep_row(name, mark, middle[1], middle[0], f);
+}
+
 static void measure(const char *name, const char *mark, const gxb_operand *operands, size_t count, int each) {
     double middle[2], least;
     const figures f = time_ways(name, operands, count, each, middle, &least);
-    csv_row("%s%s,%.1f,%.1f,%lu,%lu,%.17g,%.4f,%.4f,%lu,%lu,%.1f", name, mark, middle[1], least,
-            (unsigned long)f.triangles, (unsigned long)f.components, f.volume, 1 - exact_share(&f), exact_share(&f),
-            (unsigned long)f.allocations, (unsigned long)f.peak, middle[0]);
-    keep_row(name, mark, middle[1], middle[0], &f);
+    write_row(name, mark, middle, least, &f);
 }
 
 static void measure_helped(const char *name, const gxb_operand *operands, size_t count) {
@@ -243,6 +261,110 @@ static void measure_spheres(void) {
     }
 }
 
+static double uniform(uint64_t *state) { return ldexp((double)(splitmix64(state) >> 11), -53); }
+
+/* A turned unit cube about 0.9 from its neighbours, or (apart 0) anywhere among them */
+static wl_surface turned_cube(size_t i, int apart, uint64_t *state) {
+    wl_frame frame = wl_rotated();
+    wl_surface s;
+    int k;
+    memset(&s, 0, sizeof s);
+    for (k = 0; k < 3; k++, i /= CUBES)
+        frame.origin[k] = apart ? 0.9 * (double)(i % CUBES) + 0.05 * uniform(state) : 0.9 * CUBES * uniform(state);
+    wl_add_box(&s, &frame, 0.5, 0.5, 0.5);
+    return s;
+}
+
+static void measure_edits(void) {
+    static wl_surface cubes[CUBES * CUBES * CUBES];
+    static gxb_operand operands[CUBES * CUBES * CUBES];
+    static uint32_t index[CUBES * CUBES * CUBES]; /* of the operand that is there now */
+    static double us[EDITS];
+    const size_t count = sizeof cubes / sizeof *cubes;
+    const char *name = "E";
+    gxb_boolean *b = NULL;
+    gxb_boolean_result r;
+    uint64_t state = 1;
+    double middle[2];
+    figures f;
+    size_t i;
+    progress_draw("kernel", done++, total, name);
+    stop_at(name, gxb_boolean_create(NULL, &b, NULL));
+    stop_at(name, gxb_boolean_set_retained(b, 1, NULL));
+    for (i = 0; i < count; i++) {
+        cubes[i] = turned_cube(i, 1, &state);
+        operands[i] = operand_of(&cubes[i]);
+        operands[i].simple = 1;
+        index[i] = (uint32_t)i;
+        stop_at(name, gxb_boolean_add(b, &operands[i], NULL));
+    }
+    stop_at(name, gxb_boolean_evaluate(b, &r, NULL));
+    for (i = 0; i < EDITS; i++) {
+        const size_t n = (size_t)(uniform(&state) * (double)count);
+        const wl_surface cube = turned_cube(0, 0, &state);
+        double before;
+        free(cubes[n].vertices);
+        free(cubes[n].triangles);
+        cubes[n] = cube;
+        operands[n].vertices = cube.vertices;
+        operands[n].triangles = cube.triangles;
+        before = seconds(NULL);
+        stop_at(name, gxb_boolean_remove(b, index[n], NULL));
+        stop_at(name, gxb_boolean_add(b, &operands[n], NULL));
+        stop_at(name, gxb_boolean_evaluate(b, &r, NULL));
+        us[i] = 1e6 * (seconds(NULL) - before);
+        index[n] = (uint32_t)(count + i);
+    }
+    f = figures_of(name, b, &r, 1);
+    middle[0] = middle[1] = median(us, EDITS);
+    write_row(name, "", middle, us[0], &f);
+    gxb_boolean_destroy(b);
+    measure("E anew", "", operands, count, 0);
+    for (i = 0; i < count; i++) {
+        free(cubes[i].vertices);
+        free(cubes[i].triangles);
+    }
+}
+
+static double processor_seconds(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* Rows at these lengths of one chain; the second figure is the last step's. */
+static void measure_chain(void) {
+    static const size_t lengths[] = {10, 30, 100, 300, 1000};
+    gxb_boolean *b = NULL;
+    gxb_boolean_result r;
+    uint64_t state = 1;
+    double all = 0;
+    size_t i, row = 0;
+    progress_draw("kernel", done++, total, "chain");
+    stop_at("chain", gxb_boolean_create(NULL, &b, NULL));
+    stop_at("chain", gxb_boolean_set_retained(b, 1, NULL));
+    for (i = 0; row < sizeof lengths / sizeof *lengths; i++) {
+        wl_surface cube = turned_cube(i, 1, &state);
+        gxb_operand operand = operand_of(&cube);
+        double before = processor_seconds(), took[2], step;
+        operand.simple = 1;
+        stop_at("chain", gxb_boolean_add(b, &operand, NULL));
+        stop_at("chain", gxb_boolean_evaluate(b, &r, NULL));
+        step = processor_seconds() - before;
+        all += step;
+        free(cube.vertices);
+        free(cube.triangles);
+        if (i + 1 == lengths[row]) {
+            const figures f = figures_of("chain", b, &r, 1);
+            char name[NAME];
+            snprintf(name, sizeof name, "chain_%lu", (unsigned long)lengths[row++]);
+            took[0] = took[1] = 1e6 * all;
+            write_row(name, "", took, 1e6 * step, &f);
+        }
+    }
+    gxb_boolean_destroy(b);
+}
+
 static void measure_generated(void) {
     static const uint32_t faces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
     static const double low[3] = {0, 0, 0}, high[3] = {1, 1, 1};
@@ -261,6 +383,8 @@ static void measure_generated(void) {
     measure_workload("W3 generated", &tetrahedron, wl_wavy(1));
     measure_workload("W4 generated", &cube, wl_sticks(&axes));
     measure_spheres();
+    measure_edits();
+    measure_chain();
     free(tetrahedron.vertices);
     free(tetrahedron.triangles);
     free(cube.vertices);

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Writes what benches have measured as a page with tables and charts, and two parts of the README.
 # usage: sh bench/page.sh TABLES PAGE README
+#        sh bench/page.sh TABLES PAGE blade     writes the sections of blades anew, or makes them; needs their tables alone
 #     TABLES  directory of the benches' CSV files; a missing one is an error
 #     PAGE    the page; charts are in charts/ beside it
 #     README  what stands between its lines `<!-- NAME -->` and `<!-- end of NAME -->` is written anew: why, speed
@@ -9,10 +10,13 @@ tables=$1
 page=$2
 readme=$3
 
-for bench in quadrature stepping front conditioning failure table2 table2_ratios scaling kernel open smallest solver product violent accuracy drift frames skin blade strokes thin; do
+wanted="quadrature stepping front conditioning failure table2 table2_ratios scaling kernel open smallest solver product violent accuracy drift frames skin blade strokes thin"
+[ "$readme" != blade ] || wanted="blade strokes"
+for bench in $wanted; do
     [ -s "$tables/$bench.csv" ] || { echo "$0: $tables/$bench.csv is missing: make bench-$(echo $bench | sed 's/_ratios//; s/product/solver/')" >&2; exit 2; }
 done
 for name in why speed; do
+    [ "$readme" != blade ] || break
     for line in "<!-- $name -->" "<!-- end of $name -->"; do
         [ "$(grep -cx -- "$line" "$readme")" = 1 ] || { echo "$0: $readme: no line \`$line\`, or several" >&2; exit 2; }
     done
@@ -333,7 +337,8 @@ heading() {
 }
 
 blade() {
-    text "Edges in space through blocks that move meanwhile, built by \`-O2\`. The blocks of the scenes have 12^3 cubes, six elements \
+    text "Measured on $(date -r "$tables/blade.csv" +%Y-%m-%d); times are of the processor. Edges in space through blocks that move \
+meanwhile, built by \`-O2\`. The blocks of the scenes have 12^3 cubes, six elements \
 each, and move by steps. Elements count as often as they were divided; leaves are what each of them added. Overlap, sawing, retreats \
 and the like are in \`bench/blade.h\`. Volume: how far it is off at most, as a share."
     echo
@@ -432,6 +437,32 @@ steps, root of the mean square over the run, over the largest displacement. defa
 
 # A paragraph
 text() { echo "$*" | fold -s -w 119 | sed 's/ *$//'; }
+
+# The sections of blades: from the line "## Blades in moving bodies" up to "## Booleans of closed surfaces"
+blade_sections() {
+    echo "## Blades in moving bodies"
+    echo
+    blade
+    echo
+    echo "## Thousands of strokes"
+    echo
+    text "Blocks of cubes, six elements each, from which tools take material. Freshly cut: a body cut at once by the union of all \
+tools; a carving refines its tools, so that no body is like it. us: for each element that a stroke touches, time of the processor."
+    echo
+    table strokes "| scene | cubes along an edge | strokes | kB | at most | freshly cut | leaves | freshly cut | same topology | us, first tenth | last tenth | freshly cut | median stroke, ms | longest | compactions | longest of these, ms |"
+    echo
+}
+
+# Only these sections: the page is written to a file beside it first
+if [ "$readme" = blade ]; then
+    {
+        awk '/^## (Blades in moving bodies|Booleans of closed surfaces)$/ { exit } { print }' "$page"
+        blade_sections
+        awk '/^## Booleans of closed surfaces$/ { on = 1 } on { print }' "$page"
+    } >"$page.new" && mv "$page.new" "$page" || exit 2
+    echo "wrote sections of blades of $page"
+    exit 0
+fi
 
 {
     echo "# Accuracy against speed, and where methods fail"
@@ -580,17 +611,7 @@ solver's model and multigrid where it has touched them, $(range frames 8 1) time
     echo
     skin
     echo
-    echo "## Blades in moving bodies"
-    echo
-    blade
-    echo
-    echo "## Thousands of strokes"
-    echo
-    text "Blocks of cubes, six elements each, from which tools take material. Freshly cut: a body cut at once by the union of all \
-tools; a carving refines its tools, so that no body is like it. us: for each element that a stroke touches."
-    echo
-    table strokes "| scene | cubes along an edge | strokes | kB | at most | freshly cut | leaves | freshly cut | same topology | us, first tenth | last tenth | freshly cut | median stroke, ms | longest | compactions | longest of these, ms |"
-    echo
+    blade_sections
     echo "## Booleans of closed surfaces"
     echo
     text "\"+\": evaluated after each operand, \"?\": surfaces that are not vouched for as simple. Times include components and \
@@ -599,6 +620,7 @@ their volumes; surface: the time without them."
     table kernel "| workload | median, us | least, us | triangles | components | volume | signs by filter | exact | allocations | peak, bytes | surface, us |"
     echo
     echo "![chains and single Booleans beside other kernels](charts/open.svg)"
+    echo "![time and memory of a chain](charts/chains.svg)"
     echo
     text "Workloads like the Open Boolean Benchmark's, in its frame (\`gxboolean --request\`), one thread each: from meshes to the \
 result, evaluated after every operation, without reading and writing files. manifold is built with its own release flags, and its \

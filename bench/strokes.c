@@ -4,10 +4,11 @@
    make bench-strokes builds it by -O2, as users do, and runs it. It prints CSV and writes it to
    build/bench/strokes.csv, and a table to stderr. usage: strokes [FILE [--small]]; --small: fewer strokes.
 
-   kb, most_kb: held after the last stroke, and at most. leaves: kept ones. us: of a stroke, for each element whose
-   cells it touches: of the first tenth of the strokes, of the last tenth, of 50 further ones on the body freshly cut.
-   median_ms, worst_ms: of a stroke. settled: how often the body has given back what it no longer needs; settle_ms: the
-   longest stroke among those. A carving refines its tools by elements, so that no body is like it. */
+   Times are of the processor. kb, most_kb: held after the last stroke, and at most. leaves: kept ones. us: of a stroke,
+   for each element whose cells it touches: of the first tenth of the strokes, of the last tenth, of 50 further ones on
+   the body freshly cut. median_ms, worst_ms: of a stroke. settled: how often the body has given back what it no longer
+   needs; settle_ms: the longest stroke among those. A carving refines its tools by elements, so that no body is like
+   it. */
 #define _POSIX_C_SOURCE 200112L
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
@@ -79,10 +80,10 @@ static double wear(const strokes *scene, gx_body *body, uint32_t first, uint32_t
     for (i = first; i < end; i++) {
         const uint64_t settled = body->complex->settled;
         gx_cut_report report;
-        const double start = seconds(NULL);
+        const double start = processor_seconds(NULL);
         memset(&report, 0, sizeof report);
         check(strokes_apply(scene, body, i, &report), strokes_names[scene->kind]);
-        times[i - first] = seconds(NULL) - start;
+        times[i - first] = processor_seconds(NULL) - start;
         sum += times[i - first];
         touched += report.touched_elements;
         if (r != NULL && body->complex->settled != settled) {

@@ -11,6 +11,7 @@
      >>frames      their files, the progress bar, where a run ends early
      >>blade       the blade that cuts while the body steps
      >>run         steps, frame by frame
+     >>depth       how far pieces are in each other
      >>report      summary and JSON */
 #include "gxio.h"
 
@@ -51,9 +52,12 @@ typedef struct settings {
     double thickness;   /* m; 0: sheets stay sheets */
     gx_blade_desc edge; /* of the blade */
     double dt, young, poisson, density, affine, gravity[3], stretch[3];
+    double friction, ground, sleep; /* of contact: coefficient, m, m/s */
+    gx_collider *colliders;         /* collider_count; room for one more */
+    size_t collider_count;
     uint32_t frames, newton, cut_at, cells;
     int release, rests; /* --release, --static */
-    int quiet, help;
+    int contact, grounded, quiet, help;
 } settings;
 
 /* What the blade did */
@@ -86,10 +90,10 @@ typedef struct run {
     int has_page, has_mesh; /* the page is open; it has the triangles of the skin */
     gx_cut_report cut;
     int has_cut;
+    gx_step_report stepped; /* of the last step */
     uint32_t frames_written;
     int bar; /* a progress bar stands on stderr */
     double seconds_start, seconds_newton;
-    gx_step_report balance; /* of --static */
     gxio_error error;
 } run;
 
@@ -104,7 +108,8 @@ enum {
     TAKES_SOLID,
     TAKES_KEEP,
     TAKES_MATERIAL,
-    TAKES_REGION
+    TAKES_REGION,
+    TAKES_COLLIDER
 };
 
 typedef struct option {
@@ -171,7 +176,16 @@ static const char usage[] =
     "  --fix 'AXIS<V'      holds the material with x, y or z below V; 'AXIS>V': above\n"
     "  --fix box:X0,Y0,Z0,X1,Y1,Z1, --fix sphere:X,Y,Z,RADIUS\n"
     "                      holds the material inside\n"
-    "  --stretch X,Y,Z     starts scaled by these factors about the centre of the bounding box\n"
+    "  --stretch X,Y,Z     starts scaled by these factors about the centre of the bounding box\n";
+/* Of contact and files: compilers need not take longer strings than those before. */
+static const char usage_rest[] =
+    "  --contact           pieces press on each other, from the frame of a cut on\n"
+    "  --friction MU       of contact (0)\n"
+    "  --ground Z          contact with a plane at this height, m\n"
+    "  --collider sphere:X,Y,Z,RADIUS, --collider box:X0,Y0,Z0,X1,Y1,Z1,\n"
+    "  --collider capsule:X0,Y0,Z0,X1,Y1,Z1,RADIUS\n"
+    "                      contact with a body that is rigid and stays where it is\n"
+    "  --sleep SPEED       pieces that are slower for half a second fall asleep, m/s (0: none)\n"
     "  --out PATH          directory of the frames (out); with --format html: the file (out.html)\n"
     "  --format vtu|obj|html\n"
     "                      frames for ParaView with a collection frames.pvd (default), Wavefront, or one page that a\n"
@@ -209,6 +223,60 @@ static int parse_region(const char *text, gx_region *region) {
     if (text[0] < 'x' || text[0] > 'z' || (text[1] != '<' && text[1] != '>')) return 0;
     if (!gxio_argument_number(text + 2, v)) return 0;
     *region = gx_region_half_space((uint32_t)(text[0] - 'x'), text[1] == '<' ? -1 : 1, v[0]);
+    return 1;
+}
+
+/* A collider that stays where it is. axis: what its z axis is */
+static void place_collider(gx_collider *collider, const double center[3], const double axis[3]) {
+    const double length = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
+    double z[3], x[3] = {0, 0, 0}, along;
+    int k, least = 0;
+    for (k = 0; k < 3; k++) z[k] = axis[k] / length;
+    for (k = 1; k < 3; k++)
+        if (fabs(z[k]) < fabs(z[least])) least = k;
+    for (k = 0; k < 3; k++) x[k] = (k == least) - z[least] * z[k]; /* across the axis */
+    along = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+    for (k = 0; k < 3; k++) {
+        const int i = (k + 1) % 3, j = (k + 2) % 3;
+        collider->pose[4 * k] = x[k] / along;
+        collider->pose[4 * k + 1] = (z[i] * x[j] - z[j] * x[i]) / along;
+        collider->pose[4 * k + 2] = z[k];
+        collider->pose[4 * k + 3] = center[k];
+    }
+}
+
+/* sphere:X,Y,Z,R, box:X0,Y0,Z0,X1,Y1,Z1, capsule:X0,Y0,Z0,X1,Y1,Z1,R */
+static int parse_collider(const char *text, gx_collider *collider) {
+    static const double up[3] = {0, 0, 1};
+    const char *sphere = gxio_after(text, "sphere:"), *box = gxio_after(text, "box:"),
+               *capsule = gxio_after(text, "capsule:");
+    double v[7] = {0, 0, 0, 0, 0, 0, 0}, center[3], way[3], square = 0;
+    int k;
+    memset(collider, 0, sizeof *collider);
+    if (sphere) {
+        if (gxio_argument_list(sphere, v, 4, 4) != 4 || !(v[3] > 0)) return 0;
+        collider->kind = GX_COLLIDER_SPHERE;
+        collider->size[0] = v[3];
+        place_collider(collider, v, up);
+        return 1;
+    }
+    if (!box && !capsule) return 0;
+    if (box ? gxio_argument_list(box, v, 6, 6) != 6 : gxio_argument_list(capsule, v, 7, 7) != 7 || !(v[6] > 0))
+        return 0;
+    for (k = 0; k < 3; k++) {
+        center[k] = 0.5 * (v[k] + v[3 + k]);
+        way[k] = v[3 + k] - v[k];
+        square += way[k] * way[k];
+        if (box && !(way[k] > 0)) return 0;
+        collider->size[k] = 0.5 * way[k];
+    }
+    collider->kind = box ? GX_COLLIDER_BOX : GX_COLLIDER_CAPSULE;
+    if (capsule) {
+        collider->size[0] = v[6];
+        collider->size[1] = 0.5 * sqrt(square);
+        collider->size[2] = 0;
+    }
+    place_collider(collider, center, capsule && square > 0 ? way : up);
     return 1;
 }
 
@@ -261,6 +329,10 @@ static const char *store(settings *set, const option *o, const char *value) {
     case TAKES_SHEET: add_cut(set, value, GX_SURFACE_SHEET); return NULL;
     case TAKES_SOLID: add_cut(set, value, GX_SURFACE_SOLID); return NULL;
     case TAKES_KEEP: add_cut(set, value, GX_SURFACE_KEEP); return NULL;
+    case TAKES_COLLIDER:
+        return parse_collider(value, &set->colliders[set->collider_count++])
+                 ? NULL
+                 : "is not sphere:X,Y,Z,RADIUS, box:X0,Y0,Z0,X1,Y1,Z1 or capsule:X0,Y0,Z0,X1,Y1,Z1,RADIUS";
     case TAKES_MATERIAL: return add_inclusion(set, value);
     default:
         return parse_region(value, &set->regions[set->region_count++])
@@ -334,6 +406,11 @@ static int take_arguments(settings *set, int argc, char **argv, gxio_error *erro
                         {"--gravity", TAKES_VECTOR, set->gravity, 0},
                         {"--fix", TAKES_REGION, NULL, 0},
                         {"--stretch", TAKES_VECTOR, set->stretch, 0},
+                        {"--contact", TAKES_NOTHING, &set->contact, 0},
+                        {"--friction", TAKES_NUMBER, &set->friction, 0},
+                        {"--ground", TAKES_NUMBER, &set->ground, 0},
+                        {"--collider", TAKES_COLLIDER, NULL, 0},
+                        {"--sleep", TAKES_NUMBER, &set->sleep, 0},
                         {"--out", TAKES_TEXT, &set->out, 0},
                         {"--format", TAKES_TEXT, &set->format, 0},
                         {"--report", TAKES_TEXT, &set->report, 0},
@@ -350,7 +427,28 @@ static int take_arguments(settings *set, int argc, char **argv, gxio_error *erro
     for (o = options; o->name && !set->blade; o++)
         if (o->seen && strncmp(o->name, "--blade-", strlen("--blade-")) == 0)
             return misused(error, o->name, "needs a --blade");
+    for (o = options; o->name && !set->contact; o++)
+        if (o->seen && (o->target == &set->friction || o->target == &set->ground || o->takes == TAKES_COLLIDER))
+            return misused(error, o->name, "needs --contact");
+    set->grounded = find_option(options, "--ground")->seen;
     return set->rests ? settle_options(set, options, error) : 1;
+}
+
+/* The ground becomes a collider, and all get names and friction. */
+static void finish_colliders(settings *set) {
+    static const double up[3] = {0, 0, 1};
+    const double foot[3] = {0, 0, set->ground};
+    size_t i;
+    if (set->grounded) {
+        gx_collider *ground = &set->colliders[set->collider_count++];
+        memset(ground, 0, sizeof *ground);
+        ground->kind = GX_COLLIDER_PLANE;
+        place_collider(ground, foot, up);
+    }
+    for (i = 0; i < set->collider_count; i++) {
+        set->colliders[i].id = (uint32_t)i;
+        set->colliders[i].friction = set->friction;
+    }
 }
 
 static int is_format(const settings *set, const char *format) { return strcmp(set->format, format) == 0; }
@@ -371,6 +469,8 @@ static int check_settings(const settings *set, gxio_error *error) {
     if (set->blade && !set->frames) return misused(error, "--blade", "needs frames, and --frames is 0");
     if (!(set->edge.tolerance >= 0.0)) return misused(error, "--blade-tolerance", "must be at least 0");
     if (!(set->edge.min_advance >= 0.0)) return misused(error, "--blade-advance", "must be at least 0");
+    if (!(set->friction >= 0.0)) return misused(error, "--friction", "must be at least 0");
+    if (!(set->sleep >= 0.0)) return misused(error, "--sleep", "must be at least 0");
     if (!is_format(set, "vtu") && !is_format(set, "obj") && !is_format(set, "html"))
         return misused(error, "--format", "must be vtu, obj or html");
     return 1;
@@ -392,9 +492,11 @@ static int parse_settings(settings *set, int argc, char **argv, gxio_error *erro
     set->kinds = (uint32_t *)gxio_array(room, sizeof *set->kinds);
     set->regions = (gx_region *)gxio_array(room, sizeof *set->regions);
     set->inclusions = (inclusion *)calloc(room, sizeof *set->inclusions);
-    if (!set->cuts || !set->kinds || !set->regions || !set->inclusions)
+    set->colliders = (gx_collider *)gxio_array(room, sizeof *set->colliders);
+    if (!set->cuts || !set->kinds || !set->regions || !set->inclusions || !set->colliders)
         return misused(error, "arguments", "out of memory");
     if (!take_arguments(set, argc, argv, error)) return 0;
+    finish_colliders(set);
     if (!set->out) set->out = is_format(set, "html") ? "out.html" : "out";
     return set->help ? 1 : check_settings(set, error);
 }
@@ -599,6 +701,15 @@ static int build_mesh(run *r, gx_body_desc *desc) {
     return gx_body_create(desc, &r->body, &failure) == GX_OK ? EXIT_DONE : refuse_mesh(r, &failure);
 }
 
+/* Contact, then the blade */
+static int let_touch(run *r) {
+    gx_contact_desc contact;
+    gx_failure failure;
+    memset(&contact, 0, sizeof contact);
+    contact.friction = r->set.friction;
+    return gx_body_contact(r->body, &contact, &failure) == GX_OK ? make_blade(r) : fail(r, "--contact", &failure);
+}
+
 /* Gives what lies inside of surfaces their material. */
 static int include(run *r) {
     gx_surface *surfaces = (gx_surface *)gxio_array(r->set.inclusion_count, sizeof *surfaces);
@@ -652,6 +763,7 @@ static int build(run *r) {
     result = stretch(r, &failure);
     if (result != GX_OK) return fail(r, "body", &failure);
     if (r->set.region_count) result = gx_body_hold(r->body, r->set.regions, r->set.region_count, &failure);
+    if (result == GX_OK && r->set.contact) return let_touch(r);
     if (result == GX_OK) return make_blade(r);
     fail(r, "--fix", &failure);
     return failure.field ? EXIT_MISUSED : EXIT_FAILED;
@@ -680,9 +792,11 @@ static int cut(run *r) {
     return result == GX_OK ? EXIT_DONE : refuse_cut(r, &failure);
 }
 
+/* Creases of 34 degrees and more stay sharp. */
+static const gx_skin_desc shading = {0.6, 1};
+
 /* Looks at the body as it now is: view, and skin with room for its positions if frames are to be written. */
 static int look(run *r) {
-    const gx_skin_desc shading = {0.6, 1}; /* creases of 34 degrees and more stay sharp */
     gx_failure failure;
     if (gx_body_view(r->body, &r->view, &failure) != GX_OK) return fail(r, "surface", &failure);
     if (!r->set.frames) return EXIT_DONE;
@@ -868,12 +982,14 @@ static const double static_cg_tolerance = 1e-4;
 /* The balance of forces is searched for until the residual is that of rounding; a coarse one is no balance. */
 static int step(run *r, uint32_t frame) {
     gx_step_desc desc;
-    gx_step_report report;
     gx_failure failure;
     memset(&desc, 0, sizeof desc);
     desc.dt = r->set.dt;
     memcpy(desc.gravity, r->set.gravity, sizeof desc.gravity);
     desc.newton_iterations = r->set.newton;
+    desc.colliders = r->set.colliders;
+    desc.collider_count = r->set.collider_count;
+    desc.sleep_speed = r->set.sleep;
     if (r->set.rests) {
         desc.integrator = GXS_STATIC;
         desc.dt = 0.0;
@@ -881,12 +997,11 @@ static int step(run *r, uint32_t frame) {
         desc.cg_iterations = STATIC_CG;
         desc.cg_tolerance = static_cg_tolerance;
     }
-    if (gx_body_step(r->body, &desc, &report, &failure) != GX_OK) return refuse_step(r, frame, &failure);
-    r->seconds_newton += report.seconds;
-    r->balance = report;
-    if (!r->set.rests || report.residual <= static_accepted) return EXIT_DONE;
+    if (gx_body_step(r->body, &desc, &r->stepped, &failure) != GX_OK) return refuse_step(r, frame, &failure);
+    r->seconds_newton += r->stepped.seconds;
+    if (!r->set.rests || r->stepped.residual <= static_accepted) return EXIT_DONE;
     gxio_fail(&r->error, "--static", 0, "no balance after %lu iterations: a residual of %.1e is left",
-              (unsigned long)report.newton_iterations, report.residual);
+              (unsigned long)r->stepped.newton_iterations, r->stepped.residual);
     return complain(r, EXIT_FAILED);
 }
 
@@ -919,7 +1034,120 @@ static int simulate(run *r) {
     return code;
 }
 
+/* ----------------------------------------------------------------------------------------------- >>depth */
+
+/* The squared distance of p from a segment */
+static double from_segment(const double *p, const double *a, const double *b) {
+    double along = 0, length = 0, square = 0, share;
+    int k;
+    for (k = 0; k < 3; k++) {
+        along += (p[k] - a[k]) * (b[k] - a[k]);
+        length += (b[k] - a[k]) * (b[k] - a[k]);
+    }
+    share = length > 0 ? fmin(fmax(along / length, 0.0), 1.0) : 0.0;
+    for (k = 0; k < 3; k++) {
+        const double d = p[k] - a[k] - share * (b[k] - a[k]);
+        square += d * d;
+    }
+    return square;
+}
+
+/* The squared distance of p from a triangle: from its plane if the foot is inside, else from an edge */
+static double from_triangle(const double *p, const double *const corner[3]) {
+    double n[3], square, height = 0, best = HUGE_VAL;
+    int i, k, inside = 1;
+    for (k = 0; k < 3; k++) {
+        const int x = (k + 1) % 3, y = (k + 2) % 3;
+        n[k] = (corner[1][x] - corner[0][x]) * (corner[2][y] - corner[0][y]) -
+               (corner[1][y] - corner[0][y]) * (corner[2][x] - corner[0][x]);
+    }
+    square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+    for (k = 0; k < 3; k++) height += n[k] * (p[k] - corner[0][k]);
+    for (i = 0; i < 3; i++) {
+        const double *a = corner[i], *b = corner[(i + 1) % 3];
+        double side = 0;
+        for (k = 0; k < 3; k++) {
+            const int x = (k + 1) % 3, y = (k + 2) % 3;
+            side += n[k] * ((b[x] - a[x]) * (p[y] - a[y]) - (b[y] - a[y]) * (p[x] - a[x]));
+        }
+        inside &= side >= 0;
+        best = fmin(best, from_segment(p, a, b));
+    }
+    return inside && square > 0 ? fmin(best, height * height / square) : best;
+}
+
+/* How far a point is in a fragment that it is inside of, m: the way to its skin */
+static double depth_in(const run *r, uint32_t fragment, const double *p) {
+    double best = HUGE_VAL;
+    size_t t;
+    for (t = 0; t < r->skin.triangle_count; t++) {
+        const uint32_t *v = r->skin.triangles + 3 * t;
+        const double *corner[3];
+        int i;
+        if (r->skin.triangle_fragment[t] != fragment) continue;
+        for (i = 0; i < 3; i++) corner[i] = r->skin_positions + 3 * (size_t)v[i];
+        best = fmin(best, from_triangle(p, corner));
+    }
+    return sqrt(best);
+}
+
+static double mean_edge(const run *r) {
+    double sum = 0;
+    size_t e;
+    int i, j, k;
+    for (e = 0; e < r->view.element_count; e++)
+        for (i = 0; i < 4; i++)
+            for (j = 0; j < i; j++) {
+                const double *a = r->view.positions + 3 * (size_t)r->view.elements[4 * e + (size_t)i];
+                const double *b = r->view.positions + 3 * (size_t)r->view.elements[4 * e + (size_t)j];
+                double square = 0;
+                for (k = 0; k < 3; k++) square += (a[k] - b[k]) * (a[k] - b[k]);
+                sum += sqrt(square);
+            }
+    return r->view.element_count ? sum / (6.0 * (double)r->view.element_count) : 1.0;
+}
+
+/* How far a vertex of the skin is in other fragments or below the ground at most, m. It asks where cells are, nothing
+   that contact knows. Returns below 0 where the body cannot tell. */
+static double deepest_vertex(run *r) {
+    enum { MOST = 64 };
+    double deepest = 0;
+    size_t t, i, h, count;
+    gx_hit hits[MOST];
+    uint32_t *own = (uint32_t *)gxio_array(r->skin.vertex_count, sizeof *own);
+    if (!own) return -1.0;
+    if (gx_body_skin_positions(r->body, r->skin_positions, NULL) != GX_OK) deepest = -1.0;
+    for (t = 0; t < 3 * r->skin.triangle_count; t++) own[r->skin.triangles[t]] = r->skin.triangle_fragment[t / 3];
+    for (i = 0; i < r->skin.vertex_count && deepest >= 0; i++) {
+        const double *x = r->skin_positions + 3 * i;
+        if (r->set.grounded) deepest = fmax(deepest, r->set.ground - x[2]);
+        if (gx_body_locate_all(r->body, x, hits, MOST, &count, NULL) != GX_OK) continue; /* more than MOST pieces */
+        for (h = 0; h < count; h++)
+            if (hits[h].fragment != own[i]) deepest = fmax(deepest, depth_in(r, hits[h].fragment, x));
+    }
+    free(own);
+    return deepest;
+}
+
 /* ---------------------------------------------------------------------------------------------- >>report */
+
+static void print_contact(FILE *stream, run *r) {
+    const double deepest = deepest_vertex(r);
+    gx_motion *motions = (gx_motion *)gxio_array(r->view.fragment_count, sizeof *motions);
+    size_t i, count = 0;
+    (void)gx_body_contacts(r->body, NULL, 0, &count, NULL);
+    fprintf(stream, "  \"contacts\": %lu,\n  \"max_penetration\": %.17g,\n  \"energy\": %.17g,\n  \"asleep\": %s,\n",
+            (unsigned long)count, deepest / mean_edge(r), r->stepped.energy,
+            r->stepped.stop == GXS_STOP_ASLEEP ? "true" : "false");
+    fputs("  \"fragment_centers\": [", stream);
+    if (motions && gx_body_motion(r->body, motions, r->view.fragment_count, NULL) == GX_OK)
+        for (i = 0; i < r->view.fragment_count; i++) {
+            const double *c = motions[i].center;
+            fprintf(stream, "%s[%.17g, %.17g, %.17g]", i ? ", " : "", c[0], c[1], c[2]);
+        }
+    fputs("],\n", stream);
+    free(motions);
+}
 
 static int compare_doubles(const void *a, const void *b) {
     const double x = *(const double *)a, y = *(const double *)b;
@@ -1001,7 +1229,7 @@ static size_t count_unknowns(const gx_view *view) { return 3 * view->copy_count 
 /* The largest displacement of a vertex of the skin, m */
 static gx_result find_tip(run *r, double *tip, gx_failure *failure) {
     gx_skin skin;
-    gx_result result = gx_body_skin(r->body, NULL, &skin, failure);
+    gx_result result = gx_body_skin(r->body, &shading, &skin, failure); /* the one of the frames */
     double *x = NULL;
     size_t i;
     *tip = 0.0;
@@ -1031,8 +1259,8 @@ static void print_report(FILE *stream, run *r, uint64_t hash, double tip, double
     fprintf(stream, "  \"affine_copies\": %lu,\n  \"tip\": %.17g,\n", (unsigned long)count_affine(view), tip);
     if (r->set.rests)
         fprintf(stream, "  \"newton_iterations\": %lu,\n  \"cg_iterations\": %lu,\n  \"residual\": %.17g,\n",
-                (unsigned long)r->balance.newton_iterations, (unsigned long)r->balance.cg_iterations,
-                r->balance.residual);
+                (unsigned long)r->stepped.newton_iterations, (unsigned long)r->stepped.cg_iterations,
+                r->stepped.residual);
     fprintf(stream, "  \"topology_hash\": \"%08lx%08lx\",\n  \"min_link_ratio\": %.17g,\n", (unsigned long)(hash >> 32),
             (unsigned long)(hash & 0xffffffffu), smallest_link(r));
     fprintf(stream,
@@ -1044,6 +1272,7 @@ static void print_report(FILE *stream, run *r, uint64_t hash, double tip, double
             gxio_seconds(NULL) - r->seconds_start);
     if (r->set.inclusion_count) print_materials(stream, r);
     if (r->blade) print_blade(stream, &r->strokes);
+    if (r->set.contact) print_contact(stream, r);
     fprintf(stream, "  \"frames\": %lu\n}\n", (unsigned long)r->set.frames);
 }
 
@@ -1081,8 +1310,8 @@ static void summarise_frames(const run *r) {
     if (!r->set.frames) return;
     if (r->set.rests)
         printf("balance   %lu iterations, %lu of conjugate gradients, %.3g s; residual %.1e\n",
-               (unsigned long)r->balance.newton_iterations, (unsigned long)r->balance.cg_iterations, r->seconds_newton,
-               r->balance.residual);
+               (unsigned long)r->stepped.newton_iterations, (unsigned long)r->stepped.cg_iterations, r->seconds_newton,
+               r->stepped.residual);
     else
         printf("steps     %lu of %g s, %.3g ms each\n", (unsigned long)r->set.frames, r->set.dt,
                1e3 * r->seconds_newton / r->set.frames);
@@ -1149,6 +1378,7 @@ static void release(run *r) {
     free((void *)r->set.cuts);
     free(r->set.kinds);
     free(r->set.regions);
+    free(r->set.colliders);
 }
 
 static int execute(run *r, int argc, char **argv) {
@@ -1156,6 +1386,7 @@ static int execute(run *r, int argc, char **argv) {
     if (!parse_settings(&r->set, argc, argv, &r->error)) return complain(r, EXIT_MISUSED);
     if (r->set.help) {
         fputs(usage, stdout);
+        fputs(usage_rest, stdout);
         return EXIT_DONE;
     }
     code = load(r);

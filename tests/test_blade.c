@@ -1137,6 +1137,26 @@ START_TEST(huge_displacements) {
 }
 END_TEST
 
+/* A body that is thrown over the place where the edge was a move ago, and stays beside the edge: nothing has passed
+   through it. After that the edge passes as always. */
+START_TEST(thrown_bodies) {
+    stage s = open_block(3, 1);
+    uint64_t topology;
+    size_t i;
+    int k;
+    move_at(&s, -2.5, 1.3);
+    for (i = 0; i < s.view.copy_count; i++) s.view.displacement[3 * i + 1] -= 3.5;
+    topology = hash_of(s.body);
+    move_at(&s, -5.2, 1.3);
+    check_stage(&s, 0);
+    ck_assert(hash_of(s.body) == topology && s.tally.triangles == 0);
+    for (k = 0; k < 30; k++) move_at(&s, -5.2 + 0.2 * k, 1.3);
+    stage_lift(&s);
+    check_fragments(&s, 2, 0);
+    stage_close(&s);
+}
+END_TEST
+
 /* Far from the body nothing happens. */
 START_TEST(nothing_near) {
     stage s = open_block(3, 1);
@@ -1295,6 +1315,7 @@ int main(void) {
     tcase_add_loop_test(tests, degenerate_edges, 0, 3);
     tcase_add_loop_test(tests, far_ends, 0, 3);
     tcase_add_loop_test(tests, huge_displacements, 0, 3);
+    tcase_add_test(tests, thrown_bodies);
     tcase_add_test(tests, nothing_near);
     tcase_add_test(tests, refused_moves);
     tcase_add_loop_test(tests, memory_runs_out, 0, 4);

@@ -2,7 +2,9 @@
    is retained, one whose result is made anew in each step, and one made of all operands at once. The first two show the
    same triangles. All three have the same vertices to the last bit and the same components. A copy that only the
    reported ranges change stays equal to the retained result. Operands are those of the fuzzer, on one lattice, with
-   repetitions. Some steps run out of memory, are read off coarsely, or in another precision. */
+   repetitions. Some steps run out of memory, are read off coarsely, or in another precision. Operands are taken out,
+   too: the Boolean of those that are left, made anew, has the same components, and the same corners once coplanar
+   faces are merged. */
 #define GXFEM_BOOLEAN_IMPLEMENTATION
 #include "../gxfem_boolean.h"
 #include "fuzz_cases.h"
@@ -24,6 +26,9 @@ typedef struct chain {
     uint64_t state;
     int by_function; /* a function of all winding numbers decides */
     int failed;      /* memory ran out: the retained Boolean has arranged all operands at once */
+    int removes;     /* operands are taken out on the way */
+    int removed[CHAIN];
+    uint32_t index[CHAIN]; /* of each operand that was added, in the Booleans that keep all */
 } chain;
 
 static uint32_t chance(chain *c, uint32_t n) { return (uint32_t)(splitmix64(&c->state) % n); }
@@ -41,8 +46,7 @@ static void make_chain(chain *c, uint64_t seed) {
     static test_case made;
     uint8_t bytes[256];
     uint32_t style, length, i;
-    c->failed = 0;
-    c->count = 0;
+    memset(c, 0, sizeof *c);
     c->state = seed;
     style = chance(c, CASE_STYLES);
     length = 3 + chance(c, CHAIN - 3);
@@ -168,22 +172,49 @@ static void drop_picture(picture *p) {
     free(p->parts);
 }
 
-/* Triangulations depend on the order of operands; corners and components do not. */
-static void check_same(const picture *p, const picture *q, int facets, uint64_t seed, size_t step) {
+static void check_parts(const picture *p, const picture *q, uint64_t seed, size_t step) {
     size_t i;
-    ck_assert_msg(
-        p->corner_count == q->corner_count && same_bits(p->corners, q->corners, p->corner_count * sizeof *p->corners),
-        "seed %llu, step %zu: %zu corners, or %zu", (unsigned long long)seed, step, p->corner_count, q->corner_count);
-    ck_assert_msg(p->facet_count == q->facet_count, "seed %llu, step %zu: %zu triangles, or %zu",
-                  (unsigned long long)seed, step, p->facet_count, q->facet_count);
-    ck_assert_msg(!facets || same_bits(p->facets, q->facets, p->facet_count * sizeof *p->facets),
-                  "seed %llu, step %zu: other triangles", (unsigned long long)seed, step);
     ck_assert_msg(p->part_count == q->part_count, "seed %llu, step %zu: %zu components, or %zu",
                   (unsigned long long)seed, step, p->part_count, q->part_count);
     for (i = 0; i < p->part_count; i++)
         ck_assert_msg(p->parts[i].euler == q->parts[i].euler &&
                           fabs(p->parts[i].volume - q->parts[i].volume) <= 1e-12 * p->parts[i].volume,
                       "seed %llu, step %zu: component %zu", (unsigned long long)seed, step, i);
+}
+
+static void check_corners(const picture *p, const picture *q, uint64_t seed, size_t step) {
+    ck_assert_msg(
+        p->corner_count == q->corner_count && same_bits(p->corners, q->corners, p->corner_count * sizeof *p->corners),
+        "seed %llu, step %zu: %zu corners, or %zu", (unsigned long long)seed, step, p->corner_count, q->corner_count);
+    ck_assert_msg(p->facet_count == q->facet_count, "seed %llu, step %zu: %zu triangles, or %zu",
+                  (unsigned long long)seed, step, p->facet_count, q->facet_count);
+}
+
+/* Triangulations depend on the order of operands; corners and components do not. */
+static void check_same(const picture *p, const picture *q, int facets, uint64_t seed, size_t step) {
+    check_corners(p, q, seed, step);
+    ck_assert_msg(!facets || same_bits(p->facets, q->facets, p->facet_count * sizeof *p->facets),
+                  "seed %llu, step %zu: other triangles", (unsigned long long)seed, step);
+    check_parts(p, q, seed, step);
+}
+
+/* What an operand divided that was taken out does not show in the faces' outlines. */
+static void check_merged(gxb_boolean *a, gxb_boolean *b, uint64_t seed, size_t step) {
+    gxb_boolean *both[2];
+    picture p[2];
+    int i;
+    both[0] = a;
+    both[1] = b;
+    for (i = 0; i < 2; i++) {
+        gxb_boolean_result r;
+        ck_assert_int_eq(gxb_boolean_set_triangulation(both[i], GXB_MERGED, NULL), GX_OK);
+        ck_assert_int_eq(gxb_boolean_evaluate(both[i], &r, NULL), GX_OK);
+        ck_assert_int_eq(gxb_boolean_set_triangulation(both[i], GXB_DIVIDED, NULL), GX_OK);
+        p[i] = picture_of(both[i], &r);
+    }
+    check_corners(&p[0], &p[1], seed, step);
+    drop_picture(&p[0]);
+    drop_picture(&p[1]);
 }
 
 /* ---- a copy that follows the reported ranges ---- */
@@ -300,7 +331,8 @@ static void check_step(chain *c, gxb_boolean *retained, gxb_boolean *anew, copy 
     gxb_boolean_result r;
     picture p[3];
     size_t i;
-    for (i = 0; i <= step; i++) (void)add(fresh, &c->operand[i]);
+    for (i = 0; i <= step; i++)
+        if (!c->removed[i]) (void)add(fresh, &c->operand[i]);
     evaluate(c, retained, &r, m);
     follow(mirror, retained, &r);
     p[0] = picture_of(retained, &r);
@@ -310,27 +342,56 @@ static void check_step(chain *c, gxb_boolean *retained, gxb_boolean *anew, copy 
     p[2] = picture_of(fresh, &r);
     compared++;
     if (!c->failed) check_same(&p[0], &p[1], 1, seed, step);
-    check_same(&p[0], &p[2], 0, seed, step);
+    if (!c->removes)
+        check_same(&p[0], &p[2], 0, seed, step);
+    else {
+        check_parts(&p[0], &p[2], seed, step);
+        check_merged(anew, fresh, seed, step);
+    }
     for (i = 0; i < 3; i++) drop_picture(&p[i]);
     gxb_boolean_destroy(fresh);
     look_elsewhere(c, retained);
 }
 
-static void check_chain(uint64_t seed) {
+/* Takes an operand out of both. Memory may run out the first time. Some have been added since the last evaluation. */
+static void remove_one(chain *c, gxb_boolean *retained, gxb_boolean *anew, size_t step, memory *m) {
+    const size_t i = chance(c, (uint32_t)step + 1);
+    gx_result result;
+    if (c->removed[i] || c->index[i] == UINT32_MAX) return;
+    if (chance(c, 4) == 0) fail_from(m, chance(c, 3), 0);
+    result = gxb_boolean_remove(retained, c->index[i], NULL);
+    never_fail(m);
+    if (result == GX_ERROR_MEMORY) result = gxb_boolean_remove(retained, c->index[i], NULL);
+    ck_assert_int_eq(result, GX_OK);
+    ck_assert_int_eq(gxb_boolean_remove(anew, c->index[i], NULL), GX_OK);
+    ck_assert_int_eq(gxb_boolean_remove(anew, c->index[i], NULL), GX_ERROR_INDEX);
+    c->removed[i] = 1;
+}
+
+static size_t count_left(const chain *c, size_t step) {
+    size_t i, left = 0;
+    for (i = 0; i <= step; i++) left += !c->removed[i] && c->index[i] != UINT32_MAX;
+    return left;
+}
+
+static void check_chain_of(uint64_t seed, int removes) {
     static chain c;
     memory m = plenty();
     copy mirror;
     gxb_boolean *retained, *anew;
     size_t step, added = 0;
     make_chain(&c, seed);
+    c.removes = removes;
     memset(&mirror, 0, sizeof mirror);
     retained = start(&c, 1, &m);
     anew = start(&c, 0, NULL);
     for (step = 0; step < c.count; step++) {
         const gx_result result = add(retained, &c.operand[step]);
         ck_assert_int_eq(add(anew, &c.operand[step]), result);
+        c.index[step] = result == GX_OK ? (uint32_t)added : UINT32_MAX;
         added += result == GX_OK;
-        if (added > 0 && chance(&c, 5) > 0) check_step(&c, retained, anew, &mirror, &m, seed, step);
+        while (removes && chance(&c, 3) == 0) remove_one(&c, retained, anew, step, &m);
+        if (count_left(&c, step) > 0 && chance(&c, 5) > 0) check_step(&c, retained, anew, &mirror, &m, seed, step);
     }
     drop_copy(&mirror);
     gxb_boolean_destroy(retained);
@@ -338,11 +399,13 @@ static void check_chain(uint64_t seed) {
     ck_assert(m.blocks == NULL && !m.wrong && !m.overrun);
 }
 
+static void check_chain(uint64_t seed) { check_chain_of(seed, 0); }
+
 static uint64_t seeds[2]; /* given by the caller: the first, and the end */
 
 START_TEST(given_chains) {
     uint64_t seed;
-    for (seed = seeds[0]; seed < seeds[1]; seed++) check_chain(seed);
+    for (seed = seeds[0]; seed < seeds[1]; seed++) check_chain_of(seed, (int)(seed & 1));
     printf("%zu evaluations compared\n", compared);
 }
 END_TEST
@@ -350,6 +413,12 @@ END_TEST
 START_TEST(retained_results_are_those_of_a_fresh_boolean) {
     int i;
     for (i = 0; i < CHAINS / 10 / FEWER; i++) check_chain((uint64_t)(CHAINS / 10 * _i + i));
+}
+END_TEST
+
+START_TEST(operands_are_taken_out) {
+    int i;
+    for (i = 0; i < CHAINS / 20 / FEWER; i++) check_chain_of((uint64_t)(CHAINS / 20 * _i + i), 1);
 }
 END_TEST
 
@@ -406,6 +475,48 @@ START_TEST(all_is_new_that_is_made_from_nothing) {
 }
 END_TEST
 
+/* A Boolean of which everything is taken out is empty. Its next operand is the first one again. */
+START_TEST(all_operands_are_taken_out) {
+    static const double corners[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    static const uint32_t faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+    static chain c;
+    gxb_boolean *b;
+    gxb_boolean_result r;
+    gx_failure f;
+    gxb_components parts;
+    int round;
+    memset(&c, 0, sizeof c);
+    b = start(&c, _i, NULL);
+    ck_assert_int_eq(gxb_boolean_remove(NULL, 0, &f), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gxb_boolean_remove(b, 0, &f), GX_ERROR_INDEX);
+    ck_assert_str_eq(f.field, "operand");
+    ck_assert_uint_eq(f.index, 0);
+    for (round = 0; round < 3; round++) {
+        static const uint32_t operations[] = {GXB_UNION, GXB_INTERSECTION, GXB_DIFFERENCE};
+        gxb_operand o;
+        memset(&o, 0, sizeof o);
+        o.vertices = &corners[0][0];
+        o.vertex_count = 4;
+        o.triangles = &faces[0][0];
+        o.triangle_count = 4;
+        o.operation = operations[round];
+        ck_assert_int_eq(gxb_boolean_add(b, &o, NULL), GX_OK);
+        ck_assert_int_eq(gxb_boolean_evaluate(b, &r, NULL), GX_OK);
+        ck_assert_int_eq(gxb_boolean_components(b, &parts, NULL), GX_OK);
+        ck_assert_uint_eq(parts.count, 1);
+        ck_assert(fabs(parts.total_volume - 1.0 / 6) < 1e-15);
+        ck_assert_uint_eq(r.triangle_operand[0], (uint32_t)round);
+        ck_assert_int_eq(gxb_boolean_remove(b, (uint32_t)round, NULL), GX_OK);
+        ck_assert_int_eq(gxb_boolean_components(b, &parts, NULL), GX_ERROR_SEQUENCE);
+        ck_assert_int_eq(gxb_boolean_evaluate(b, &r, NULL), GX_OK);
+        ck_assert_uint_eq(r.triangle_count, 0);
+        ck_assert_int_eq(gxb_boolean_components(b, &parts, NULL), GX_OK);
+        ck_assert_uint_eq(parts.count, 0);
+    }
+    gxb_boolean_destroy(b);
+}
+END_TEST
+
 /* test_chains [FIRST END]: the chains of these seeds */
 int main(int argc, char **argv) {
     Suite *suite = suite_create("chains");
@@ -418,7 +529,9 @@ int main(int argc, char **argv) {
         tcase_add_test(tests, given_chains);
     } else {
         tcase_add_loop_test(tests, retained_results_are_those_of_a_fresh_boolean, 0, 10);
+        tcase_add_loop_test(tests, operands_are_taken_out, 0, 10);
         tcase_add_test(tests, chains_that_failed);
+        tcase_add_loop_test(tests, all_operands_are_taken_out, 0, 2);
         tcase_add_loop_test(anew, all_is_new_that_is_made_from_nothing, 0, 8);
     }
     suite_add_tcase(suite, tests);

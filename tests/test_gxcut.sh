@@ -371,6 +371,31 @@ rm page.html
 check "frames before a cut that fails" "$([ $? -eq 1 ] && [ "$(page_lines | grep -c '^frame')" -eq 2 ] &&
     [ "$(tail -n 1 page.html)" = '</html>' ] || echo 'are not in the page')"
 
+# ---- contact
+refuses "friction without contact" 2 "--friction: needs --contact" cube5 --friction 0.5
+refuses "ground without contact" 2 "--ground: needs --contact" cube5 --ground 0
+refuses "collider without contact" 2 "--collider: needs --contact" cube5 --collider sphere:0,0,0,1
+refuses "negative friction" 2 "--friction: must be at least 0" cube5 --contact --friction -1
+refuses "negative sleep" 2 "--sleep: must be at least 0" cube5 --sleep -1
+refuses "unknown collider" 2 "--collider: 'ball:0,0,0,1' is not sphere" cube5 --contact --collider ball:0,0,0,1
+refuses "collider without radius" 2 "--collider: 'sphere:0,0,0,0' is not sphere" cube5 --contact --collider sphere:0,0,0,0
+refuses "flat box" 2 "--collider: 'box:0,0,0,1,0,1' is not sphere" cube5 --contact --collider box:0,0,0,1,0,1
+refuses "short capsule" 2 "--collider: 'capsule:0,0,0,1,1,1' is not sphere" cube5 --contact --collider capsule:0,0,0,1,1,1
+
+# in_contact NAME CONDITION: c (contacts), d (max_penetration) of the last report must be such that CONDITION holds
+in_contact() {
+    check "$1" "$(awk -F'[:,]' '/"contacts"/ { c = $2 } /"max_penetration"/ { d = $2 }
+        END { if (!(c != "" && d != "" && ('"$2"'))) print "contacts " c ", penetration " d }' r.json)"
+}
+block="grid:2,2,2,6 --sheet plane:1,1,1.1,0.1,0.15,1 --dt 0.0166 --friction 0.4 --frames 40 --report r.json"
+runs "block in two on the ground" $block --contact --ground 0 --sleep 0.1
+in_contact "pieces rest on each other and on the ground" "c > 10 && d >= 0 && d < 0.05"
+runs "block in two on a ball, a box and a capsule" $block --contact --collider sphere:1,1,-1,1 \
+    --collider box:-1,-1,-2,0.5,0.5,-0.05 --collider capsule:1.6,0,-0.2,1.6,2,-0.2,0.2
+in_contact "pieces rest on colliders" "c > 4 && d < 0.05"
+runs "a capsule that is a ball" grid:1,1,1,6 --contact --collider capsule:0.5,0.5,-1,0.5,0.5,-1,0.99 --frames 9 --report r.json
+in_contact "a block rests on it" "c > 0"
+
 # ---- a blade
 pass k.blade 41 -1 5
 runs "pass through a swing" grid:4,4,4 --fix 'z>3.9' --stretch 1.1,1,1.2 --blade k.blade --frames 45 --report r.json

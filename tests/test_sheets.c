@@ -1613,6 +1613,27 @@ START_TEST(slices_fall_on_each_other) {
         for (i = 0; i < count; i++) deepest = fmax(deepest, contacts[i].depth);
         ck_assert_msg(report.cg_iterations < 400, "round %d: %u iterations", round, report.cg_iterations);
     }
+    { /* saved and cloned in contact, all go on with the same bits */
+        gx_body *others[2];
+        gx_body_desc none;
+        void *memory;
+        size_t size;
+        memset(&none, 0, sizeof none);
+        ck_assert_int_eq(gx_body_save(body, NULL, 0, &size, NULL), GX_OK);
+        memory = oracle_memory(NULL, size, 1);
+        ck_assert_int_eq(gx_body_save(body, memory, size, &size, NULL), GX_OK);
+        ck_assert_int_eq(gx_body_load(memory, size, &none, &others[0], NULL), GX_OK);
+        ck_assert_int_eq(gx_body_clone(body, &others[1], NULL), GX_OK);
+        for (round = 0; round < 10; round++) {
+            advance(body, &step);
+            for (i = 0; i < 2; i++) advance(others[i], &step);
+        }
+        for (i = 0; i < 2; i++) {
+            expect_same_motion(body, others[i]);
+            gx_body_destroy(others[i]);
+        }
+        free(memory);
+    }
     ck_assert_int_gt(touched, 10);
     ck_assert_msg(deepest < 0.06, "depth %g", deepest);
     gx_body_destroy(body);

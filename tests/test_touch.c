@@ -3,6 +3,7 @@
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
 #include "body.h"
+#include "pool.h"
 
 static gx_contact_desc contact_desc(double friction) {
     gx_contact_desc desc;
@@ -177,6 +178,7 @@ START_TEST(search_is_exhaustive) {
         for (v = 0, i = 0; v < surface->vertex_count; v++) {
             gxp_touch_pair best;
             best = gxp_no_pair(v);
+            if (!(surface->vertices[v].area > 0)) continue; /* no sample */
             for (f = 0; f < surface->facet_count; f++) gxp_try_facet(body, surface, dt, f, &best);
             if (best.facet == GXB_NONE) continue;
             CHECK_SEED(i < body->touch.found, seed);
@@ -740,6 +742,9 @@ START_TEST(refusals) {
     take(body, &step);
     ck_assert_int_eq(gx_body_contacts(body, NULL, 0, &count, &failure), GX_ERROR_CAPACITY);
     ck_assert_uint_gt(count, 4);
+    switch_on(body, 0); /* again: nothing presses yet */
+    ck_assert_int_eq(gx_body_contacts(body, NULL, 0, &count, &failure), GX_OK);
+    ck_assert_uint_eq(count, 0);
     ck_assert_int_eq(gx_body_contact(body, NULL, &failure), GX_OK);
     take(body, &step);
     ck_assert_int_eq(gx_body_contacts(body, NULL, 0, &count, &failure), GX_ERROR_SEQUENCE);
@@ -806,6 +811,65 @@ START_TEST(beside_the_callers_pairs) {
 }
 END_TEST
 
+/* The arms of a U, far from each other at rest, are put into each other: a piece is its own contact there. */
+START_TEST(arms_meet) {
+    workload w = grid(4, 1, 3, 5);
+    const gx_region all = gx_region_half_space(2, -1, 9);
+    gx_body *body = body_of(&w);
+    static gx_contact contacts[256];
+    gx_step_desc step = falling(0.01);
+    gx_surface tool;
+    gx_view view;
+    size_t i, count;
+    add_box(&w, 1, 1, -1, 1, 3, 2, 4);
+    tool = surface_of(&w.surfaces[0]);
+    ck_assert_int_eq(gx_body_carve(body, &tool, NULL, NULL), GX_OK);
+    ck_assert_int_eq(gx_body_hold(body, &all, 1, NULL), GX_OK);
+    view = view_of(body);
+    ck_assert_uint_eq(view.fragment_count, 1);
+    for (i = 0; i < view.copy_count; i++)
+        if (w.positions[3 * view.copy_node[i]] > 2.9) view.displacement[3 * i] = -2.05;
+    switch_on(body, 0);
+    take(body, &step);
+    ck_assert_int_eq(gx_body_contacts(body, contacts, 256, &count, NULL), GX_OK);
+    ck_assert_uint_ge(count, 8); /* four corners of each arm's face at least */
+    for (i = 0; i < count; i++) {
+        ck_assert(contacts[i].fragment == 0 && contacts[i].other == 0);
+        if (contacts[i].position[2] > 1.5) {
+            ck_assert_double_gt(fabs(contacts[i].normal[0]), 0.99);
+            ck_assert_double_lt(fabs(contacts[i].depth - 0.05), 1e-3);
+        }
+    }
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* A clone that is made before the first step with contact has it on. */
+START_TEST(cloned_before_a_step) {
+    static const double up[3] = {0, 0, 1};
+    workload w;
+    gx_body *body = cut_cube(&w, 2, up, 1.5), *clone = NULL;
+    gx_step_desc step = falling(0.01);
+    size_t count[2];
+    int frame;
+    hold_below(body, 0.1);
+    switch_on(body, 0.5);
+    ck_assert_int_eq(gx_body_clone(body, &clone, NULL), GX_OK);
+    for (frame = 0; frame < 3; frame++) {
+        take(body, &step);
+        take(clone, &step);
+    }
+    ck_assert(force_of(body, &count[0]) > 0);
+    ck_assert(force_of(clone, &count[1]) > 0);
+    ck_assert_uint_eq(count[0], count[1]);
+    ck_assert(gx_body_state_hash(body) == gx_body_state_hash(clone));
+    gx_body_destroy(body);
+    gx_body_destroy(clone);
+    wl_free(&w);
+}
+END_TEST
+
 /* Zeros stand for the numbers that gx_contact_desc tells; others are others. */
 START_TEST(zeros_are_defaults) {
     static const double up[3] = {0, 0, 1};
@@ -863,6 +927,7 @@ START_TEST(without_memory) {
     }
     step.colliders = colliders;
     step.collider_count = 2;
+    step.cg_tolerance = 1e-5;
     for (n = 0; result != GX_OK; n++) {
         const uint64_t state = gx_body_state_hash(body[0]);
         ck_assert_uint_lt(n, 10000);
@@ -880,6 +945,16 @@ START_TEST(without_memory) {
         for (n = 0; n < 3 * view[0].copy_count; n++)
             ck_assert_double_le(fabs(view[0].displacement[n] - view[1].displacement[n]), _i < 2 ? 1e-4 : 0);
     }
+    (void)view_of(body[0]);
+    result = GX_ERROR_MEMORY;
+    for (n = 0; result != GX_OK; n++) { /* events, too */
+        gx_contact_event events[64];
+        fail_from(&m, n, _i % 2);
+        result = gx_body_contact_events(body[0], events, 64, &count[1], NULL);
+        never_fail(&m);
+        ck_assert(result == GX_OK || (result == GX_ERROR_MEMORY && body[0]->touch.touching.count == 0));
+    }
+    ck_assert_uint_gt(n, 1);
     gx_body_destroy(body[0]);
     ck_assert(is_whole(&m));
     gx_body_destroy(body[1]);
@@ -887,7 +962,7 @@ START_TEST(without_memory) {
 }
 END_TEST
 
-/* ---- saved, cloned, restored ---- */
+/* ---- events, filters, sleep, threads ---- */
 
 /* Pieces that lean on each other, a ground and a small sphere, with friction; asleep soon if asked for */
 static gx_body *leaning(workload *w, gx_collider colliders[2], gx_step_desc *step) {
@@ -919,6 +994,260 @@ static gx_body *leaning(workload *w, gx_collider colliders[2], gx_step_desc *ste
     ck_assert_uint_gt(body->touch.surfaces[body->touch.current].state_count, 20);
     return body;
 }
+
+/* Events by a slow way: for each two ids that contacts name, the sums over contacts. Returns how many there are. */
+static size_t check_events(gx_body *body, const gx_contact_event *events, size_t count) {
+    static gx_contact contacts[4096];
+    const gx_view view = view_of(body);
+    size_t all, i, e, present = 0, told = 0;
+    int k;
+    ck_assert_int_eq(gx_body_contacts(body, contacts, 4096, &all, NULL), GX_OK);
+    for (e = 0; e < count; e++) {
+        const gx_contact_event *event = &events[e];
+        double force[3] = {0, 0, 0}, load = 0;
+        size_t met = 0;
+        if (e > 0)
+            ck_assert(event[-1].fragment < event->fragment ||
+                      (event[-1].fragment == event->fragment &&
+                       (event[-1].other < event->other ||
+                        (event[-1].other == event->other && event[-1].collider < event->collider))));
+        for (i = 0; i < all; i++) {
+            const gx_contact *c = &contacts[i];
+            const uint32_t own = view.fragment_id[c->fragment],
+                           other = c->other == UINT32_MAX ? 0 : view.fragment_id[c->other];
+            const int same = own == event->fragment && other == event->other && c->collider == event->collider,
+                      swapped = other == event->fragment && own == event->other && other != 0;
+            if (!same && !swapped) continue;
+            met++;
+            load += fmax(0, gxp_dot(c->force, c->normal));
+            for (k = 0; k < 3 && own != other; k++) force[k] += (swapped ? -1 : 1) * c->force[k];
+        }
+        ck_assert_uint_eq(met, event->contacts);
+        ck_assert((met == 0) == (event->change == GX_CONTACT_ENDED));
+        ck_assert_double_le(fabs(load - event->load), 1e-9 * load);
+        for (k = 0; k < 3; k++) ck_assert_double_le(fabs(force[k] - event->force[k]), 1e-9 * (load + fabs(force[k])));
+        if (event->change != GX_CONTACT_ENDED && gxp_dot(event->normal, event->normal) > 0)
+            ck_assert_double_lt(fabs(gxp_dot(event->normal, event->normal) - 1), 1e-9);
+        present += met > 0;
+        told += met;
+    }
+    ck_assert_uint_eq(told, all);
+    return present;
+}
+
+/* A block falls on another one and is lifted off again; then the lower one is cut. */
+START_TEST(events_are_told) {
+    static const double up[3] = {0, 0, 1}, still[3] = {0, 0, 0}, apart[3] = {0, 0, 1};
+    workload w;
+    gx_body *body = cut_cube(&w, 2, up, 1.0), *clone = NULL;
+    gx_step_desc step = falling(0.01);
+    gx_contact_event events[8], again[8];
+    gx_failure failure;
+    size_t count, more;
+    ck_assert_int_eq(gx_body_contact_events(body, events, 8, &count, &failure), GX_ERROR_SEQUENCE);
+    ck_assert_str_eq(failure.field, "gx_body_contact");
+    switch_on(body, 0.3);
+    hold_below(body, 0.1);
+    ck_assert_int_eq(gx_body_contact_events(body, events, 8, &count, &failure), GX_ERROR_SEQUENCE);
+    ck_assert_str_eq(failure.field, "gx_body_view"); /* the cut's fragments have no ids yet */
+    (void)view_of(body);
+    ck_assert_int_eq(gx_body_contact_events(body, events, 8, &count, &failure), GX_OK);
+    ck_assert_uint_eq(count, 0);
+    take(body, &step);
+    ck_assert_int_eq(gx_body_contact_events(body, events, 0, &count, &failure), GX_ERROR_CAPACITY);
+    ck_assert_str_eq(failure.field, "capacity");
+    ck_assert_uint_eq(count, 1);
+    ck_assert_int_eq(gx_body_contact_events(body, events, 8, &count, &failure), GX_OK);
+    ck_assert_uint_eq(count, 1);
+    ck_assert_uint_eq(events[0].change, GX_CONTACT_BEGAN);
+    ck_assert_uint_eq(check_events(body, events, count), 1);
+    ck_assert_double_gt(fabs(events[0].normal[2]), 0.99);
+    ck_assert_double_lt(fabs(events[0].position[2] - 1), 0.05);
+    take(body, &step);
+    ck_assert_int_eq(gx_body_clone(body, &clone, NULL), GX_OK); /* which knows of the last call */
+    take(body, &step);
+    take(clone, &step);
+    ck_assert_int_eq(gx_body_contact_events(body, events, 8, &count, &failure), GX_OK);
+    ck_assert_int_eq(gx_body_contact_events(clone, again, 8, &more, &failure), GX_OK);
+    ck_assert_uint_eq(events[0].change, GX_CONTACT_PERSISTS);
+    ck_assert(count == 1 && more == 1 && memcmp(events, again, sizeof *events) == 0);
+    gx_body_destroy(clone);
+    move_pieces(body, 1, apart, still);
+    take(body, &step);
+    ck_assert_int_eq(gx_body_contact_events(body, events, 8, &count, &failure), GX_OK);
+    ck_assert_uint_eq(count, 1);
+    ck_assert_uint_eq(events[0].change, GX_CONTACT_ENDED);
+    ck_assert_uint_eq(check_events(body, events, count), 0);
+    add_axis_plane(&w, 0, 1.1);
+    cut_by(body, &w, 1, 1);
+    ck_assert_int_eq(gx_body_contact_events(body, events, 8, &count, &failure), GX_ERROR_SEQUENCE);
+    ck_assert_str_eq(failure.field, "gx_body_step");
+    take(body, &step);
+    ck_assert_int_eq(gx_body_contact_events(body, events, 8, &count, &failure), GX_ERROR_SEQUENCE);
+    ck_assert_str_eq(failure.field, "gx_body_view");
+    (void)view_of(body);
+    ck_assert_int_eq(gx_body_contact_events(body, events, 8, &count, &failure), GX_OK);
+    ck_assert_uint_gt(check_events(body, events, count), 0); /* the halves of a block */
+    ck_assert_int_eq(gx_body_contact_events(NULL, events, 8, &count, &failure), GX_ERROR_ARGUMENT);
+    ck_assert_str_eq(failure.field, "body");
+    ck_assert_int_eq(gx_body_contact_events(body, events, 8, NULL, &failure), GX_ERROR_ARGUMENT);
+    ck_assert_str_eq(failure.field, "count");
+    ck_assert_int_eq(gx_body_contact_events(body, NULL, 8, &count, &failure), GX_ERROR_ARGUMENT);
+    ck_assert_str_eq(failure.field, "events");
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+typedef struct refused {
+    uint32_t fragment, other, collider; /* UINT32_MAX: any */
+} refused;
+
+static int is_let(void *user, uint32_t fragment, uint32_t other, uint32_t collider) {
+    const refused *r = (const refused *)user;
+    if (other == UINT32_MAX) return r->collider == UINT32_MAX || collider != r->collider;
+    return r->fragment == UINT32_MAX ||
+           !((fragment == r->fragment && other == r->other) || (fragment == r->other && other == r->fragment));
+}
+
+/* What a filter refuses does not touch: neither two pieces, nor a piece and a collider; all else does. */
+START_TEST(filters) {
+    workload w;
+    gx_collider colliders[2];
+    gx_step_desc step;
+    gx_body *body = leaning(&w, colliders, &step);
+    refused none = {UINT32_MAX, UINT32_MAX, UINT32_MAX};
+    gx_contact_event events[16];
+    size_t count, i, kinds[3] = {0, 0, 0};
+    uint64_t state[2];
+    int way;
+    for (way = 0; way < 2; way++) { /* one that lets all touch changes nothing */
+        gx_body *clone = NULL;
+        ck_assert_int_eq(gx_body_clone(body, &clone, NULL), GX_OK);
+        step.contact_filter = way ? is_let : NULL;
+        step.contact_filter_user = &none;
+        take(clone, &step);
+        state[way] = gx_body_state_hash(clone);
+        gx_body_destroy(clone);
+    }
+    ck_assert(state[0] == state[1]);
+    none.fragment = 0;
+    none.other = 1;
+    none.collider = _i ? 2 : 70;
+    take(body, &step);
+    (void)view_of(body);
+    ck_assert_int_eq(gx_body_contact_events(body, events, 16, &count, NULL), GX_OK);
+    ck_assert_uint_gt(check_events(body, events, count), 0);
+    for (i = 0; i < count; i++) kinds[events[i].other != 0 ? 0 : events[i].collider == 70 ? 1 : 2]++;
+    ck_assert_uint_eq(kinds[0], 0);
+    ck_assert_uint_eq(kinds[_i ? 2 : 1], 0);
+    ck_assert_uint_gt(kinds[_i ? 1 : 2], 0);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* The pieces of two stacks fall asleep; what is touched wakes its stack only. */
+START_TEST(stacks_sleep) {
+    static const double far[3] = {3, 0, 0}, still[3] = {0, 0, 0};
+    workload w = grid(3, 2, 3, 6);
+    gx_body *body;
+    gx_collider ground;
+    gx_step_desc step = falling(1.0 / 60);
+    gx_step_report report;
+    gx_view view;
+    gx_motion motions[16];
+    double momentum[3];
+    size_t i, k, kicked = 0, asleep = 0;
+    uint32_t frame;
+    memset(&ground, 0, sizeof ground);
+    for (k = 0; k < 3; k++) ground.pose[5 * k] = 1;
+    ground.friction = 0.5;
+    add_axis_plane(&w, 2, 1.3);
+    add_axis_plane(&w, 0, 1.6);
+    body = cut_at_once(&w);
+    switch_on(body, 0.4);
+    view = view_of(body);
+    for (i = 0; i < view.copy_count; i++) { /* stacks stand apart */
+        size_t c = 0;
+        while (c < 4 * view.cell_count && view.cell_copies[c] != i) c++;
+        if (c == 4 * view.cell_count || view.fragment_center[3 * view.cell_fragment[c / 4]] < 1.6) continue;
+        for (k = 0; k < 3; k++) view.displacement[3 * i + k] += far[k] + still[k];
+    }
+    step.colliders = &ground;
+    step.collider_count = 1;
+    step.sleep_speed = 0.1;                 /* of blocks of metres */
+    for (frame = 0; frame < 180; frame++) { /* 3 s */
+        report = take(body, &step);
+        if (getenv("GXFEM_VERBOSE") && frame % 10 == 0)
+            fprintf(stderr, "%u: %g J, newton %u\n", frame, momentum_of(body, momentum), report.newton_iterations);
+        if (report.stop == GXS_STOP_ASLEEP) break;
+    }
+    ck_assert_int_eq(report.stop, GXS_STOP_ASLEEP);
+    ck_assert_double_lt(overlap_of(body), 0.05);
+    view = view_of(body);
+    ck_assert_uint_eq(view.fragment_count, 4);
+    for (i = 1; i < 4; i++) kicked = view.fragment_center[3 * i] > view.fragment_center[3 * kicked] + 1 ? i : kicked;
+    for (i = 0; i < view.copy_count; i++) {
+        size_t c = 0;
+        while (c < 4 * view.cell_count && view.cell_copies[c] != i) c++;
+        if (c < 4 * view.cell_count && view.cell_fragment[c / 4] == kicked) view.velocity[3 * i + 1] = 0.5;
+    }
+    report = take(body, &step);
+    ck_assert_int_ne(report.stop, GXS_STOP_ASLEEP);
+    ck_assert_int_eq(gx_body_motion(body, motions, 16, NULL), GX_OK);
+    view = view_of(body);
+    for (i = 0; i < 4; i++) {
+        const int still_there = !(motions[i].energy > 0);
+        asleep += (size_t)still_there;
+        ck_assert(still_there == (view.fragment_center[3 * i] < 1.6));
+    }
+    ck_assert_uint_eq(asleep, 2);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* The same bits with any number of threads, and if tasks come in any order, through cuts */
+START_TEST(threads_do_not_matter) {
+    uint64_t states[4], order = 7;
+    size_t n;
+    for (n = 0; n < 4; n++) {
+        const double p[3] = {2, 2, 2.1}, normal[3] = {0.15, 0.1, 1};
+        workload w = grid(4, 4, 4, 6);
+        gx_body_desc desc = desc_of(&w);
+        gx_body *body = NULL;
+        gx_collider ground;
+        gx_step_desc step = falling(0.02);
+        pool threads;
+        int frame, k;
+        memset(&ground, 0, sizeof ground);
+        for (k = 0; k < 3; k++) ground.pose[5 * k] = 1;
+        ground.friction = 0.5;
+        if (n == 1 || n == 2) pool_open(&threads, n + 1);
+        desc.jobs.parallel_for = n == 0 ? NULL : n == 3 ? shuffled_for : pool_for;
+        desc.jobs.user = n == 3 ? (void *)&order : (void *)&threads;
+        add_plane(&w, p, normal, 12);
+        add_axis_plane(&w, 0, 1.7);
+        ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
+        cut_by(body, &w, 0, 1);
+        switch_on(body, 0.3);
+        step.colliders = &ground;
+        step.collider_count = 1;
+        for (frame = 0; frame < 12; frame++) {
+            if (frame == 6) cut_by(body, &w, 1, 1);
+            take(body, &step);
+        }
+        states[n] = gx_body_state_hash(body);
+        ck_assert(states[n] == states[0]);
+        gx_body_destroy(body);
+        if (n == 1 || n == 2) pool_close(&threads);
+        wl_free(&w);
+    }
+}
+END_TEST
+
+/* ---- saved, cloned, restored ---- */
 
 static gx_body *twin_by(gx_body *body, int way, const workload *w) {
     gx_body *twin = NULL;
@@ -1121,11 +1450,17 @@ static Suite *suite(void) {
     tcase_add_test(tests, lips_meet);
     tcase_add_test(tests, refusals);
     tcase_add_loop_test(tests, beside_the_callers_pairs, 0, 3);
+    tcase_add_test(tests, arms_meet);
+    tcase_add_test(tests, cloned_before_a_step);
     tcase_add_test(tests, zeros_are_defaults);
     tcase_add_loop_test(tests, without_memory, 0, 4);
     ADD_SOME(tests, goes_on_alike, 15);
     tcase_add_loop_test(tests, sleeps_on_after_loading, 0, 2);
     tcase_add_test(tests, damage_to_contact);
+    tcase_add_test(tests, events_are_told);
+    tcase_add_loop_test(tests, filters, 0, 2);
+    tcase_add_test(tests, stacks_sleep);
+    tcase_add_test(tests, threads_do_not_matter);
     ADD_SOME(tests, saving_without_memory, 4);
     suite_add_tcase(s, tests);
     return s;

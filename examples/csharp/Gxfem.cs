@@ -472,6 +472,8 @@ namespace Gxfem {
         public IntPtr colliders;
         public UIntPtr collider_count;
         public IntPtr collider_loads;
+        public IntPtr contact_filter;
+        public IntPtr contact_filter_user;
         public double sleep_speed;
         public double sleep_time;
         public IntPtr clock;
@@ -499,6 +501,19 @@ namespace Gxfem {
         public fixed double normal[3];
         public fixed double force[3];
         public double depth;
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
+    public unsafe struct gx_contact_event {
+        public uint change;
+        public uint fragment;
+        public uint other;
+        public uint collider;
+        public uint contacts;
+        public fixed double force[3];
+        public double load;
+        public fixed double position[3];
+        public fixed double normal[3];
     }
 
     [StructLayout(LayoutKind.Sequential)]
@@ -968,6 +983,9 @@ namespace Gxfem {
         public const uint GX_COLLIDER_CAPSULE = 2;
         public const uint GX_COLLIDER_BOX = 3;
         public const uint GX_COLLIDER_DISTANCE = 4;
+        public const uint GX_CONTACT_BEGAN = 0;
+        public const uint GX_CONTACT_PERSISTS = 1;
+        public const uint GX_CONTACT_ENDED = 2;
         public const uint GX_SKIN_OUTER = 0;
         public const uint GXB_EXPLICIT = 0;
         public const uint GXB_LINE_PLANE = 1;
@@ -1021,6 +1039,9 @@ namespace Gxfem {
 
         [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
         public static extern gx_result gx_body_contact(IntPtr body, IntPtr desc, IntPtr failure);
+
+        [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
+        public static extern gx_result gx_body_contact_events(IntPtr body, IntPtr events, UIntPtr capacity, IntPtr count, IntPtr failure);
 
         [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
         public static extern gx_result gx_body_contacts(IntPtr body, IntPtr contacts, UIntPtr capacity, IntPtr count, IntPtr failure);
@@ -1132,6 +1153,9 @@ namespace Gxfem {
 
         [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
         public static extern gx_result gxb_boolean_evaluate(IntPtr boolean, IntPtr result, IntPtr failure);
+
+        [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
+        public static extern gx_result gxb_boolean_remove(IntPtr boolean, uint operand, IntPtr failure);
 
         [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
         public static extern gx_result gxb_boolean_set_fine(IntPtr boolean, int fine, IntPtr failure);

@@ -64,6 +64,9 @@ GX_COLLIDER_SPHERE = 1
 GX_COLLIDER_CAPSULE = 2
 GX_COLLIDER_BOX = 3
 GX_COLLIDER_DISTANCE = 4
+GX_CONTACT_BEGAN = 0
+GX_CONTACT_PERSISTS = 1
+GX_CONTACT_ENDED = 2
 GX_SKIN_OUTER = 0
 GXB_EXPLICIT = 0
 GXB_LINE_PLANE = 1
@@ -215,6 +218,10 @@ class gx_contact_desc(Structure):
 
 
 class gx_contact(Structure):
+    pass
+
+
+class gx_contact_event(Structure):
     pass
 
 
@@ -772,6 +779,8 @@ gx_step_desc._fields_ = [
     ('colliders', POINTER(gx_collider)),
     ('collider_count', c_size_t),
     ('collider_loads', POINTER(gx_collider_load)),
+    ('contact_filter', CFUNCTYPE(c_int, c_void_p, c_uint32, c_uint32, c_uint32)),
+    ('contact_filter_user', c_void_p),
     ('sleep_speed', c_double),
     ('sleep_time', c_double),
     ('clock', CFUNCTYPE(c_double, c_void_p)),
@@ -799,6 +808,18 @@ gx_contact._fields_ = [
     ('normal', c_double * 3),
     ('force', c_double * 3),
     ('depth', c_double),
+]
+
+gx_contact_event._fields_ = [
+    ('change', c_uint32),
+    ('fragment', c_uint32),
+    ('other', c_uint32),
+    ('collider', c_uint32),
+    ('contacts', c_uint32),
+    ('force', c_double * 3),
+    ('load', c_double),
+    ('position', c_double * 3),
+    ('normal', c_double * 3),
 ]
 
 gx_skin_desc._fields_ = [
@@ -1224,6 +1245,7 @@ FUNCTIONS = {
     'gx_body_carve': (c_int, [POINTER(gx_body), POINTER(gx_surface), POINTER(gx_cut_report), POINTER(gx_failure)]),
     'gx_body_clone': (c_int, [POINTER(gx_body), POINTER(POINTER(gx_body)), POINTER(gx_failure)]),
     'gx_body_contact': (c_int, [POINTER(gx_body), POINTER(gx_contact_desc), POINTER(gx_failure)]),
+    'gx_body_contact_events': (c_int, [POINTER(gx_body), POINTER(gx_contact_event), c_size_t, POINTER(c_size_t), POINTER(gx_failure)]),
     'gx_body_contacts': (c_int, [POINTER(gx_body), POINTER(gx_contact), c_size_t, POINTER(c_size_t), POINTER(gx_failure)]),
     'gx_body_create': (c_int, [POINTER(gx_body_desc), POINTER(POINTER(gx_body)), POINTER(gx_failure)]),
     'gx_body_cut': (c_int, [POINTER(gx_body), POINTER(gx_cut_desc), POINTER(gx_cut_report), POINTER(gx_failure)]),
@@ -1261,6 +1283,7 @@ FUNCTIONS = {
     'gxb_boolean_defects': (c_int, [POINTER(gxb_boolean), POINTER(gxb_defects), POINTER(gx_failure)]),
     'gxb_boolean_destroy': (None, [POINTER(gxb_boolean)]),
     'gxb_boolean_evaluate': (c_int, [POINTER(gxb_boolean), POINTER(gxb_boolean_result), POINTER(gx_failure)]),
+    'gxb_boolean_remove': (c_int, [POINTER(gxb_boolean), c_uint32, POINTER(gx_failure)]),
     'gxb_boolean_set_fine': (c_int, [POINTER(gxb_boolean), c_int, POINTER(gx_failure)]),
     'gxb_boolean_set_mend': (c_int, [POINTER(gxb_boolean), c_int, POINTER(gx_failure)]),
     'gxb_boolean_set_retained': (c_int, [POINTER(gxb_boolean), c_int, POINTER(gx_failure)]),
