@@ -12019,13 +12019,13 @@ static gx_result gxp_add_states(gx_body *body, const gxp_touch_surface *from, ui
     return GX_OK;
 }
 
-/* The facets of an element: a part of `order`, which is sorted by elements. Nothing of it is owned. */
+/* The facets of an element: a part of `order`, which has facets, sorted by elements. Nothing of it is owned. */
 static gxp_keys gxp_facets_of(const gxp_keys *order, uint32_t element) {
     gxp_keys part;
     const uint32_t first = gxp_first_key(order, (uint64_t)element << 32);
     uint32_t end;
     for (end = first; end < order->count && GXP_FIRST(order->data[end]) == element;) end++;
-    part.data = order->data != NULL ? order->data + first : NULL;
+    part.data = order->data + first;
     part.count = part.capacity = end - first;
     return part;
 }

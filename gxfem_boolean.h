@@ -3085,7 +3085,7 @@ static void gxbp_save(gxb_complex *cx, uint32_t array, uint32_t index) {
 
 /* Copies a list of the pool behind those already copied. */
 static void gxbp_move_list(const gxb_complex *cx, uint32_t *pool, uint32_t *used, uint32_t *list, uint32_t count) {
-    if (count > 0) memcpy(pool + *used, cx->pool + *list, count * sizeof *pool);
+    memcpy(pool + *used, cx->pool + *list, count * sizeof *pool);
     *list = *used;
     *used += count;
 }

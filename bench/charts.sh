@@ -4,8 +4,8 @@
 #        sh bench/charts.sh TABLES CHARTS blade     draws blade.svg alone
 #     TABLES  directory of the benches' CSV files
 #     CHARTS  directory of the SVG files
-# quadrature.csv gives quadrature.svg and quadrature_triangles.svg, stepping.csv stepping.svg and stepping_cuts.svg, the others one of their
-# own name. A table that is missing is an error. Needs gnuplot.
+# quadrature.csv gives quadrature.svg and quadrature_triangles.svg, stepping.csv stepping.svg and stepping_cuts.svg, kernel.csv chains.svg,
+# the others one of their own name. A table that is missing is an error. Needs gnuplot.
 set -u
 tables=$1
 charts=$2
@@ -13,7 +13,7 @@ mkdir -p "$charts" || exit 2
 # where BENCH: when its table was made, and on what
 where() { echo "$(date -r "$tables/$1.csv" +%Y-%m-%d), $(uname -m | tr _ -), one thread"; }
 
-for bench in ${3:-quadrature conditioning stepping front space thin scaling blade open}; do
+for bench in ${3:-quadrature conditioning stepping front space thin scaling blade open kernel}; do
     [ -s "$tables/$bench.csv" ] || { echo "$0: $tables/$bench.csv is missing: make bench-$bench" >&2; exit 2; }
 done
 
@@ -392,10 +392,26 @@ unset multiplot
 END
 }
 
+# chain_rows COLUMN: of chains by length in kernel.csv
+chain_rows() { awk -F, -v column="$1" '$1 ~ /^chain_/ { print substr($1, 7), $column }' "$tables/kernel.csv"; }
+chains() {
+    echo 'set terminal svg size 640,420 font "sans,12" background "white"'
+    echo "set output '$charts/chains.svg'"
+    echo '$time << EOD'; chain_rows 2; echo EOD
+    echo '$step << EOD'; chain_rows 3; echo EOD
+    echo '$memory << EOD'; chain_rows 10; echo EOD
+    cat <<END
+$styles
+set title "Turned cubes united one by one, nothing rounded in between"
+set logscale xyy2; set grid back lc rgb "#dddddd"; set key top left; set format y "10^{%L}"; set format y2 "10^{%L}"
+set xlabel "cubes"; set ylabel "s of the processor"; set y2label "MB"; set ytics nomirror; set y2tics
+plot \$time using 1:(\$2/1e6) with linespoints ls 1 title "the whole chain, s", \$step using 1:(\$2/1e6) with linespoints ls 2 title "the last step, s", \$memory using 1:(\$2/1e6) axes x1y2 with linespoints ls 3 title "memory, MB (right)"
+END
+}
 if [ "${3:-}" = blade ]; then
     blade | gnuplot || exit 1
     echo "wrote $charts/blade.svg"
     exit 0
 fi
-panels | gnuplot && triangles | gnuplot && conditioning | gnuplot && stepping | gnuplot && stepping_cuts | gnuplot && front | gnuplot && space | gnuplot && thin | gnuplot && scaling | gnuplot && blade | gnuplot && open | gnuplot || exit 1
-echo "wrote $charts/quadrature.svg, quadrature_triangles.svg, conditioning.svg, stepping.svg, stepping_cuts.svg, front.svg, space.svg, thin.svg, scaling.svg, blade.svg, open.svg"
+panels | gnuplot && triangles | gnuplot && conditioning | gnuplot && stepping | gnuplot && stepping_cuts | gnuplot && front | gnuplot && space | gnuplot && thin | gnuplot && scaling | gnuplot && blade | gnuplot && open | gnuplot && chains | gnuplot || exit 1
+echo "wrote $charts/quadrature.svg, quadrature_triangles.svg, conditioning.svg, stepping.svg, stepping_cuts.svg, front.svg, space.svg, thin.svg, scaling.svg, blade.svg, open.svg, chains.svg"

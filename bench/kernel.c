@@ -10,6 +10,8 @@
        S   a bumpy sphere of 8,000 triangles less a turned copy
        E   1000 turned cubes, united: one is taken out and one added elsewhere, the result retained; E anew: the cubes
            that are left, made from nothing
+       chain_N  N of these cubes, united one by one, the result retained and read after each: the whole chain, in time
+           of the processor
        +   after a name: evaluated after each operand
        ?   surfaces are not vouched for as simple; all others are
        2   on two threads; the rows of few triangles have none
@@ -35,7 +37,7 @@
 #include <malloc.h>
 #endif
 
-enum { OPERANDS = 64, CALLS = 100000, NAMES = 512, NAME = 64, GENERATED = 5, MANY = 8192, CUBES = 10, EDITS = 200 };
+enum { OPERANDS = 64, CALLS = 100000, NAMES = 512, NAME = 64, GENERATED = 6, MANY = 8192, CUBES = 10, EDITS = 200 };
 static const double SECONDS = 0.3;
 
 static size_t done, total; /* workloads */
@@ -60,6 +62,7 @@ static figures figures_of(const char *name, gxb_boolean *b, const gxb_boolean_re
     gxb_statistics s;
     figures f;
     memset(&c, 0, sizeof c);
+    memset(&s, 0, sizeof s);
     if (ask) stop_at(name, gxb_boolean_components(b, &c, NULL));
     stop_at(name, gxb_boolean_statistics(b, &s, NULL));
     f.triangles = r->triangle_count;
@@ -323,6 +326,45 @@ static void measure_edits(void) {
     }
 }
 
+static double processor_seconds(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* Rows at these lengths of one chain; the second figure is the last step's. */
+static void measure_chain(void) {
+    static const size_t lengths[] = {10, 30, 100, 300, 1000};
+    gxb_boolean *b = NULL;
+    gxb_boolean_result r;
+    uint64_t state = 1;
+    double all = 0;
+    size_t i, row = 0;
+    progress_draw("kernel", done++, total, "chain");
+    stop_at("chain", gxb_boolean_create(NULL, &b, NULL));
+    stop_at("chain", gxb_boolean_set_retained(b, 1, NULL));
+    for (i = 0; row < sizeof lengths / sizeof *lengths; i++) {
+        wl_surface cube = turned_cube(i, 1, &state);
+        gxb_operand operand = operand_of(&cube);
+        double before = processor_seconds(), took[2], step;
+        operand.simple = 1;
+        stop_at("chain", gxb_boolean_add(b, &operand, NULL));
+        stop_at("chain", gxb_boolean_evaluate(b, &r, NULL));
+        step = processor_seconds() - before;
+        all += step;
+        free(cube.vertices);
+        free(cube.triangles);
+        if (i + 1 == lengths[row]) {
+            const figures f = figures_of("chain", b, &r, 1);
+            char name[NAME];
+            snprintf(name, sizeof name, "chain_%lu", (unsigned long)lengths[row++]);
+            took[0] = took[1] = 1e6 * all;
+            write_row(name, "", took, 1e6 * step, &f);
+        }
+    }
+    gxb_boolean_destroy(b);
+}
+
 static void measure_generated(void) {
     static const uint32_t faces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
     static const double low[3] = {0, 0, 0}, high[3] = {1, 1, 1};
@@ -342,6 +384,7 @@ static void measure_generated(void) {
     measure_workload("W4 generated", &cube, wl_sticks(&axes));
     measure_spheres();
     measure_edits();
+    measure_chain();
     free(tetrahedron.vertices);
     free(tetrahedron.triangles);
     free(cube.vertices);

@@ -605,6 +605,7 @@ their volumes; surface: the time without them."
     table kernel "| workload | median, us | least, us | triangles | components | volume | signs by filter | exact | allocations | peak, bytes | surface, us |"
     echo
     echo "![chains and single Booleans beside other kernels](charts/open.svg)"
+    echo "![time and memory of a chain](charts/chains.svg)"
     echo
     text "Workloads like the Open Boolean Benchmark's, in its frame (\`gxboolean --request\`), one thread each: from meshes to the \
 result, evaluated after every operation, without reading and writing files. manifold is built with its own release flags, and its \

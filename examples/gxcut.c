@@ -792,9 +792,11 @@ static int cut(run *r) {
     return result == GX_OK ? EXIT_DONE : refuse_cut(r, &failure);
 }
 
+/* Creases of 34 degrees and more stay sharp. */
+static const gx_skin_desc shading = {0.6, 1};
+
 /* Looks at the body as it now is: view, and skin with room for its positions if frames are to be written. */
 static int look(run *r) {
-    const gx_skin_desc shading = {0.6, 1}; /* creases of 34 degrees and more stay sharp */
     gx_failure failure;
     if (gx_body_view(r->body, &r->view, &failure) != GX_OK) return fail(r, "surface", &failure);
     if (!r->set.frames) return EXIT_DONE;
@@ -1227,7 +1229,7 @@ static size_t count_unknowns(const gx_view *view) { return 3 * view->copy_count 
 /* The largest displacement of a vertex of the skin, m */
 static gx_result find_tip(run *r, double *tip, gx_failure *failure) {
     gx_skin skin;
-    gx_result result = gx_body_skin(r->body, NULL, &skin, failure);
+    gx_result result = gx_body_skin(r->body, &shading, &skin, failure); /* the one of the frames */
     double *x = NULL;
     size_t i;
     *tip = 0.0;

@@ -742,6 +742,9 @@ START_TEST(refusals) {
     take(body, &step);
     ck_assert_int_eq(gx_body_contacts(body, NULL, 0, &count, &failure), GX_ERROR_CAPACITY);
     ck_assert_uint_gt(count, 4);
+    switch_on(body, 0); /* again: nothing presses yet */
+    ck_assert_int_eq(gx_body_contacts(body, NULL, 0, &count, &failure), GX_OK);
+    ck_assert_uint_eq(count, 0);
     ck_assert_int_eq(gx_body_contact(body, NULL, &failure), GX_OK);
     take(body, &step);
     ck_assert_int_eq(gx_body_contacts(body, NULL, 0, &count, &failure), GX_ERROR_SEQUENCE);
@@ -804,6 +807,65 @@ START_TEST(beside_the_callers_pairs) {
     }
     ck_assert(gx_body_state_hash(body[0]) == gx_body_state_hash(body[1]));
     for (i = 0; i < 2; i++) gx_body_destroy(body[i]);
+    wl_free(&w);
+}
+END_TEST
+
+/* The arms of a U, far from each other at rest, are put into each other: a piece is its own contact there. */
+START_TEST(arms_meet) {
+    workload w = grid(4, 1, 3, 5);
+    const gx_region all = gx_region_half_space(2, -1, 9);
+    gx_body *body = body_of(&w);
+    static gx_contact contacts[256];
+    gx_step_desc step = falling(0.01);
+    gx_surface tool;
+    gx_view view;
+    size_t i, count;
+    add_box(&w, 1, 1, -1, 1, 3, 2, 4);
+    tool = surface_of(&w.surfaces[0]);
+    ck_assert_int_eq(gx_body_carve(body, &tool, NULL, NULL), GX_OK);
+    ck_assert_int_eq(gx_body_hold(body, &all, 1, NULL), GX_OK);
+    view = view_of(body);
+    ck_assert_uint_eq(view.fragment_count, 1);
+    for (i = 0; i < view.copy_count; i++)
+        if (w.positions[3 * view.copy_node[i]] > 2.9) view.displacement[3 * i] = -2.05;
+    switch_on(body, 0);
+    take(body, &step);
+    ck_assert_int_eq(gx_body_contacts(body, contacts, 256, &count, NULL), GX_OK);
+    ck_assert_uint_ge(count, 8); /* four corners of each arm's face at least */
+    for (i = 0; i < count; i++) {
+        ck_assert(contacts[i].fragment == 0 && contacts[i].other == 0);
+        if (contacts[i].position[2] > 1.5) {
+            ck_assert_double_gt(fabs(contacts[i].normal[0]), 0.99);
+            ck_assert_double_lt(fabs(contacts[i].depth - 0.05), 1e-3);
+        }
+    }
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* A clone that is made before the first step with contact has it on. */
+START_TEST(cloned_before_a_step) {
+    static const double up[3] = {0, 0, 1};
+    workload w;
+    gx_body *body = cut_cube(&w, 2, up, 1.5), *clone = NULL;
+    gx_step_desc step = falling(0.01);
+    size_t count[2];
+    int frame;
+    hold_below(body, 0.1);
+    switch_on(body, 0.5);
+    ck_assert_int_eq(gx_body_clone(body, &clone, NULL), GX_OK);
+    for (frame = 0; frame < 3; frame++) {
+        take(body, &step);
+        take(clone, &step);
+    }
+    ck_assert(force_of(body, &count[0]) > 0);
+    ck_assert(force_of(clone, &count[1]) > 0);
+    ck_assert_uint_eq(count[0], count[1]);
+    ck_assert(gx_body_state_hash(body) == gx_body_state_hash(clone));
+    gx_body_destroy(body);
+    gx_body_destroy(clone);
     wl_free(&w);
 }
 END_TEST
@@ -1388,6 +1450,8 @@ static Suite *suite(void) {
     tcase_add_test(tests, lips_meet);
     tcase_add_test(tests, refusals);
     tcase_add_loop_test(tests, beside_the_callers_pairs, 0, 3);
+    tcase_add_test(tests, arms_meet);
+    tcase_add_test(tests, cloned_before_a_step);
     tcase_add_test(tests, zeros_are_defaults);
     tcase_add_loop_test(tests, without_memory, 0, 4);
     ADD_SOME(tests, goes_on_alike, 15);
