@@ -381,7 +381,22 @@ $(awk -F, '$1 == "frame" { print $3; exit }' "$tables/blade.csv") elements that 
 
 # Rows of thin.csv of one series; EXPRESSION: of awk
 thin_rows() {
-    awk -F, -v series="$1" '$1 == series { print "| " '"$2"' " |" }' "$tables/thin.csv"
+    awk -F, -v series="$1" '
+        function share(x) { return x == "" ? "" : sprintf(x < 0.01 ? "%.4f" : "%.3f", x) }
+        $1 == series { first += !first * $6; print "| " '"$2"' " |" }' "$tables/thin.csv"
+}
+
+# Iterations of Newton's method: the default and up to five, with the time of a step as a multiple of one iteration's
+thin_newton() {
+    awk -F, '
+        $1 == "newton" {
+            of = $2; sub(/.* in /, "", of); kind = $2; sub(/ in .*/, "", kind)
+            if (kind + 0 == 1) one[$3, of] = $6
+            row[++n] = $3; step[n] = of; name[n] = kind; error[n] = $5; ms[n] = $6
+        }
+        END { for (i = 1; i <= n; i++)
+            if (one[row[i], step[i]] > 0)
+                printf("| %s | %s | %s | %.4f | %.1f |\n", row[i], step[i], name[i], error[i], ms[i] / one[row[i], step[i]]) }' "$tables/thin.csv"
 }
 
 # What thin.csv has for one case of a series: COLUMN by number
@@ -389,15 +404,15 @@ thin_value() { awk -F, -v series="$1" -v of="$2" -v column="$3" '$1 == series &&
 
 thin() {
     heading "t, cubes" "Poisson's ratio" "least of all placements" largest "without affine copies" aim
-    thin_rows placement '$3 " | " $4 " | " $5 " | " $6 " | " $7 " | " $8'
+    thin_rows placement '$3 " | " $4 " | " share($5) " | " share($6) " | " share($7) " | " $8'
     echo
     text "t = 0.1 in other meshes, and the slices of slab_in_five, all in one layer; Poisson's ratio 0.3."
     echo
     heading "mesh or slice" "t, cubes" "drop" "without affine copies" aim
-    thin_rows mesh '$2 " | " $3 " | " $5 " | " $7 " | " $8'
-    thin_rows slices '$2 " | " $3 " | " $5 " | " $7 " | " $8'
+    thin_rows mesh '$2 " | " $3 " | " share($5) " | " share($7) " | " $8'
+    thin_rows slices '$2 " | " $3 " | " share($5) " | " share($7) " | " $8'
     echo
-    text "Poisson's ratio 0, t = 0.1: the first frequency is $(thin_value frequency "over beam theory's" 5) of beam theory's. Large drops, as \
+    text "Poisson's ratio 0, t = 0.1: the first frequency is $(thin_value frequency "over beam theory's" 5) times beam theory's. Large drops, as \
 shares of the length: $(thin_value large "load 1.8198" 5) and $(thin_value large "load 10.903" 5); of an inextensible rod \
 $(thin_value large "load 1.8198" 7) and $(thin_value large "load 10.903" 7)."
     echo
@@ -410,14 +425,14 @@ $(thin_value large "load 1.8198" 7) and $(thin_value large "load 10.903" 7)."
     text "The time to an error: a slice of 8 x 2 cubes, t = 0.2, from rest to balance in two iterations of Newton's method to 1e-2; linear: \
 the same cut in meshes refined so many times, or layers of cubes through a slice that is meshed on its own."
     echo
-    heading "elements, refinement" unknowns error ms
-    thin_rows cost '$2 " | " $7 " | " $5 " | " $6'
+    heading "elements, refinement" unknowns error "time, multiples of the first"
+    thin_rows cost '$2 " | " $7 " | " share($5) " | " sprintf("%.2g", $6 / first)'
     echo
     text "Newton's method in steps of slab_in_five: slices 30 cubes long are let go. Error: distance of the tip from that of converged \
 steps, root of the mean square over the run, over the largest displacement. default: newton_iterations 0, and what it takes on average."
     echo
-    heading "t, cubes" "iterations in a step of" error "ms a step" "ms, converged"
-    thin_rows newton '$3 " | " $2 " | " $5 " | " $6 " | " $7'
+    heading "t, cubes" "a step" iterations error "time, multiples of one iteration's"
+    thin_newton
 }
 
 # A paragraph

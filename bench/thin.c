@@ -579,7 +579,7 @@ static void run_costs(void) {
     for (n = 1; n <= (small ? 1 : 4); n *= 2) {
         progress_draw("thin", done++, total, "cost");
         p = conforming_probe(&s, 0.3, s.thickness / (double)n, n, 0);
-        time_drop("linear, meshed", n, &p, &s, truth);
+        time_drop("meshed", n, &p, &s, truth);
     }
 }
 

@@ -35,7 +35,7 @@ for scene in "$@"; do
 done
 
 # chart FILE: share of beam theory's drop by the slice's thickness in elements, from lines
-# SCENE,cut|conforming,SLICE,THICKNESS,REFINEMENT,UNKNOWNS,SHARE with the thickness in elements of refinement 1
+# SCENE,cut|conforming|affine,SLICE,THICKNESS,REFINEMENT,UNKNOWNS,SHARE with the thickness in elements of refinement 1
 chart() {
     mkdir -p "$(dirname -- "$1")"
     { echo 'set terminal svg size 760,460 font "sans,12" background "white"'; echo "set output '$1'"
@@ -43,7 +43,7 @@ chart() {
       echo 'set xlabel "thickness of the slice, elements"; set ylabel "drop of the end, % of beam theory"'
       awk -F, '{ key = $1 ", " $2
                  if (!(key in rows)) order[++n] = key
-                 rows[key] = rows[key] ($2 == "cut" ? $4 * $5 : $5) " " 100 * $7 "\n" }
+                 rows[key] = rows[key] ($2 == "conforming" ? $5 : $4 * $5) " " 100 * $7 "\n" }
           END { for (i = 1; i <= n; i++) printf("$k%d << EOD\n%sEOD\n", i, rows[order[i]])
                 printf("plot ")
                 for (i = 1; i <= n; i++) printf("%s$k%d with points pointtype %d title \"%s\" noenhanced", i == 1 ? "" : ", ", i, 5 + i, order[i])
@@ -68,7 +68,7 @@ gallery() {
     echo "# Scenes"
     echo
     echo "The scenes of the two papers, by their parameters where they give them, and two in which a blade cuts while the body moves"
-    echo "(\`overhang\`, \`surgeon\`), one whose body is made of closed surfaces (\`organ\`); one file each in \`examples/\`."
+    echo "(\`overhang\`, \`surgeon\`), two whose body is made of closed surfaces (\`organ\`, \`trainer\`); one file each in \`examples/\`."
     echo
     gallery "$@"
     echo
@@ -103,7 +103,7 @@ gallery() {
         echo
         echo "Locking of linear elements: cut slices (the slab's own mesh, refined) and slices meshed on their own bend alike far too little"
         echo "while they are thin beside an element. Integration is not the cause: the checks below compare the same"
-        echo "slices against integrals by brute force."
+        echo "slices against integrals by brute force. With affine copies (\`gx_body_desc.affine_below\`) they bend in the slab's own mesh."
     fi
     echo
     echo "## What they say"
