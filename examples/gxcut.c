@@ -1114,7 +1114,10 @@ static double deepest_vertex(run *r) {
     double deepest = 0;
     size_t t, i, h, count;
     gx_hit hits[MOST];
-    uint32_t *own = (uint32_t *)gxio_array(r->skin.vertex_count, sizeof *own);
+    uint32_t *own;
+    if (!r->set.frames) return 0.0;
+    if (look(r) != EXIT_DONE) return -1.0; /* the skin may be one of another shading by now */
+    own = (uint32_t *)gxio_array(r->skin.vertex_count, sizeof *own);
     if (!own) return -1.0;
     if (gx_body_skin_positions(r->body, r->skin_positions, NULL) != GX_OK) deepest = -1.0;
     for (t = 0; t < 3 * r->skin.triangle_count; t++) own[r->skin.triangles[t]] = r->skin.triangle_fragment[t / 3];

@@ -3,81 +3,7 @@
 
    The body is all that the surfaces wind around, carved out of a grid: flesh, a stiffer vessel in it, and a tumour at
    the front that stands out a little. No wall lies between them before the tumour is released. */
-#include "gxshape.h"
-#include "scene.h"
-
-enum { FLESH, VESSEL, TUMOUR, MATERIALS };
-
-/* The field's surface, with triangles of about `spacing`, m */
-static gxio_surface field_surface(scene *s, gxshape_field *field, const gxshape_part *parts, size_t count,
-                                  double spacing) {
-    const double low[3] = {-0.2, -0.2, -0.2}, high[3] = {0.2, 0.2, 0.2};
-    gxio_surface surface;
-    gxshape_mesh made;
-    gxio_mesh mesh;
-    const char *wrong;
-    memset(field, 0, sizeof *field);
-    gxshape_add(field, parts, count);
-    wrong = gxshape_stuff(gxshape_field_value, field, low, high, spacing, &made);
-    if (wrong) scene_misuse(s, "surface", wrong);
-    memset(&mesh, 0, sizeof mesh);
-    mesh.positions = made.positions;
-    mesh.node_count = made.node_count;
-    mesh.elements = made.elements;
-    mesh.element_count = made.element_count;
-    surface = scene_surface_of(s, &mesh);
-    gxshape_mesh_release(&made);
-    return surface;
-}
-
-static void make_surfaces(scene *s, gxio_surface surfaces[MATERIALS]) {
-    const double spacing = s->small ? 0.016 : 0.009;
-    const gxshape_part flesh[3] = {
-        {GXSHAPE_ELLIPSOID, {-0.035, 0.0, 0.0}, {0.085, 0.075, 0.05}, {0, 0}, 0.0},
-        {GXSHAPE_ELLIPSOID, {0.05, 0.01, -0.005}, {0.08, 0.055, 0.035}, {0, 0}, 0.03},
-        {GXSHAPE_CAPSULE, {-0.07, -0.03, -0.02}, {-0.03, -0.045, -0.02}, {0.03, 0.028}, 0.02}};
-    const gxshape_part vessel[2] = {{GXSHAPE_CAPSULE, {-0.07, 0.02, 0.0}, {0.0, 0.025, 0.0}, {0.012, 0.011}, 0.0},
-                                    {GXSHAPE_CAPSULE, {0.0, 0.025, 0.0}, {0.09, 0.015, -0.005}, {0.011, 0.009}, 0.005}};
-    const gxshape_part tumour[2] = {
-        {GXSHAPE_CAPSULE, {-0.04, -0.05, 0.03}, {-0.04, -0.05, 0.03}, {0.024, 0.024}, 0.0},
-        {GXSHAPE_CAPSULE, {-0.02, -0.055, 0.025}, {-0.02, -0.055, 0.025}, {0.018, 0.018}, 0.01}};
-    gxshape_field field;
-    surfaces[FLESH] = field_surface(s, &field, flesh, 3, spacing);
-    surfaces[VESSEL] = field_surface(s, &field, vessel, 2, 0.6 * spacing);
-    surfaces[TUMOUR] = field_surface(s, &field, tumour, 2, 0.7 * spacing);
-}
-
-static gx_material material_of(double young, double poisson, double density) {
-    gx_material material;
-    memset(&material, 0, sizeof material);
-    material.elastic.kind = GXS_STABLE_NEO_HOOKEAN;
-    material.elastic.young = young;
-    material.elastic.poisson = poisson;
-    material.density = density;
-    return material;
-}
-
-/* Volume of each material, m3, in a fragment or, UINT32_MAX, in all */
-static void measure(const scene *s, uint32_t fragment, double volume[MATERIALS]) {
-    size_t c;
-    int m;
-    for (m = 0; m < MATERIALS; m++) volume[m] = 0.0;
-    for (c = 0; c < s->view.cell_count; c++)
-        if (fragment == UINT32_MAX || s->view.cell_fragment[c] == fragment)
-            volume[s->view.cell_material[c]] += s->view.cell_volume[c];
-}
-
-/* The fragment that has the most of a material */
-static uint32_t fragment_of(const scene *s, uint32_t material) {
-    double volume[MATERIALS], most = -1.0;
-    uint32_t f, best = 0;
-    for (f = 0; f < s->view.fragment_count; f++) {
-        measure(s, f, volume);
-        if (volume[material] > most) best = f;
-        most = fmax(most, volume[material]);
-    }
-    return best;
-}
+#include "organ.h"
 
 typedef struct operation {
     double whole[MATERIALS]; /* m3, before any cut */
@@ -94,7 +20,7 @@ static const double release_at = 0.15, pull_to = 0.6, slice_at = 0.7;
 static void take_hold(scene *s, operation *on) {
     gx_hit hit;
     size_t hits;
-    const uint32_t tumour = fragment_of(s, TUMOUR);
+    const uint32_t tumour = organ_fragment(s, TUMOUR);
     memcpy(on->center, scene_motion(s, tumour).center, sizeof on->center);
     scene_must(s, gx_body_locate_all(s->body, on->center, &hit, 1, &hits, &s->failure), "locate");
     scene_must(s, gx_hit_anchor(s->body, &hit, &on->anchor, &s->failure), "spring");
@@ -125,7 +51,7 @@ static void check_materials(scene *s, const operation *on, const gxio_surface su
     static const char *const names[MATERIALS] = {"flesh", "vessel", "tumour"};
     double volume[MATERIALS];
     int m;
-    measure(s, UINT32_MAX, volume);
+    organ_measure(s, UINT32_MAX, volume);
     for (m = 0; m < MATERIALS; m++) {
         const double inside = scene_volume_inside(&surfaces[m]);
         if (m != FLESH)
@@ -139,14 +65,14 @@ static void check_materials(scene *s, const operation *on, const gxio_surface su
 }
 
 static void check_pieces(scene *s, const operation *on) {
-    const uint32_t tumour = fragment_of(s, TUMOUR);
+    const uint32_t tumour = organ_fragment(s, TUMOUR);
     const gx_motion motion = scene_motion(s, tumour);
     double volume[MATERIALS], moved = 0.0;
     uint32_t f;
     int k;
     scene_check(s, s->view.fragment_count == 3, "fragments in the end: %lu (3)", (unsigned long)s->view.fragment_count);
     for (f = 0; f < s->view.fragment_count; f++) {
-        measure(s, f, volume);
+        organ_measure(s, f, volume);
         scene_check(s,
                     (f == tumour) == (volume[TUMOUR] > 0.0) && (f != tumour) == (volume[FLESH] > 0.0) &&
                         (f != tumour) == (volume[VESSEL] > 0.0),
@@ -165,7 +91,6 @@ int main(int argc, char **argv) {
         .frames = 120,
         .small_frames = 40,
         .least_frames = 20};
-    gx_material materials[MATERIALS];
     gxio_surface surfaces[MATERIALS];
     operation on;
     double mass;
@@ -173,18 +98,13 @@ int main(int argc, char **argv) {
     int m;
     memset(&on, 0, sizeof on);
     scene_open(&s, &desc, argc, argv);
-    make_surfaces(&s, surfaces);
-    materials[FLESH] = material_of(2e4, 0.45, 1050.0);
-    materials[VESSEL] = material_of(2e5, 0.4, 1100.0);
-    materials[TUMOUR] = material_of(6e4, 0.45, 1150.0);
-    s.body_desc.materials = materials;
-    s.body_desc.material_count = MATERIALS;
+    organ_surfaces(&s, surfaces);
     s.step.dt = 3.0 / s.frames;
     s.step.mass_damping = 1.0;
-    scene_make_of(&s, surfaces, MATERIALS, s.small ? 10 : 20);
+    organ_make(&s, surfaces, s.small ? 10 : 20);
     scene_hold(&s, 1, 1, 0.05);
     scene_look(&s);
-    measure(&s, UINT32_MAX, on.whole);
+    organ_measure(&s, UINT32_MAX, on.whole);
     mass = scene_mass(&s);
     scene_settle(&s, 1e-6);
     for (; s.frame < s.frames; scene_step(&s)) operate(&s, &on);

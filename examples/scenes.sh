@@ -68,7 +68,7 @@ gallery() {
     echo "# Scenes"
     echo
     echo "The scenes of the two papers, by their parameters where they give them, and two in which a blade cuts while the body moves"
-    echo "(\`overhang\`, \`surgeon\`), one whose body is made of closed surfaces (\`organ\`); one file each in \`examples/\`."
+    echo "(\`overhang\`, \`surgeon\`), two whose body is made of closed surfaces (\`organ\`, \`trainer\`); one file each in \`examples/\`."
     echo
     gallery "$@"
     echo
