@@ -425,6 +425,7 @@ START_TEST(free_sheets_take_few_iterations) {
     gxs_step_report report;
     size_t i;
     int round;
+    step.newton_iterations = 1;
     for (i = 0; i < made.nodes; i++) made.s.velocity[3 * i + 2] = 0.3 * sin(1.5 * made.s.rest[3 * i]);
     for (round = 0; round < 20; round++) {
         ck_assert_int_eq(gxs_solver_step(solver, &step, made.s.displacement, made.s.velocity, &report, NULL), GX_OK);
