@@ -721,7 +721,7 @@ START_TEST(points_are_told_in_many_ways) {
             if (k == 4) bad.point.weights = NULL;
             if (k == 5) bad.point.copies = NULL;
             if (k == 6) bad.point.copies = NULL, bad.point.weights = NULL, bad.point.count = 5;
-            if (k == 7) bad.point.count = 33;
+            if (k == 7) bad.point.count = GXS_POINT_MOST + 1;
             copies[8] = k == 8 ? (uint32_t)(n / 3) : k == 9 ? UINT32_MAX : springs[1].point.copy[0];
             if (k == 10) bad.point.epoch--;
             if (k == 11) copies[16] = (uint32_t)(n / 3), bad.point.copies = copies + 16, step.spring_count = 0;
