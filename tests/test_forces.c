@@ -1149,10 +1149,10 @@ START_TEST(a_pair_is_one_span) {
     a = point_within(&s, 5, at);
     b = point_within(&s, elements + 5, at);
     memset(&spring, 0, sizeof spring);
-    for (k = 0; k < GXS_POINT_MOST; k++) { /* each copy four times, as the most copies of a point */
+    for (k = 0; k < GXS_POINT_MOST; k++) { /* each copy several times, as the most copies of a point */
         const gxs_point *side = k < GXS_POINT_MOST / 2 ? &a : &b;
         copies[k] = side->copy[k % 4];
-        weights[k] = (side == &a ? 1 : -1) * side->weight[k % 4] / 4;
+        weights[k] = (side == &a ? 1 : -1) * side->weight[k % 4] / (GXS_POINT_MOST / 8);
     }
     for (k = 0; k < 3; k++) spring.point.position[k] = a.position[k] - b.position[k];
     spring.point.count = GXS_POINT_MOST;
@@ -1180,8 +1180,8 @@ START_TEST(a_pair_is_one_span) {
 END_TEST
 
 START_TEST(bad_spans_are_named) {
-    static const uint32_t copies[40] = {0, 1, 2, 3, 4, 5}, beyond[6] = {0, 1, 2, 3, 12, 0};
-    static const double weights[40] = {0.5, 0.5};
+    static const uint32_t copies[GXS_POINT_MOST + 1] = {0, 1, 2, 3, 4, 5}, beyond[6] = {0, 1, 2, 3, 12, 0};
+    static const double weights[GXS_POINT_MOST + 1] = {0.5, 0.5};
     double bad[6] = {0.5, 0.5, 0, 0, 0, 0};
     bad[5] = not_a_number(0);
 #define SPAN(p, n, c, w)                                                                                               \
@@ -1194,11 +1194,12 @@ START_TEST(bad_spans_are_named) {
     attempt_with(a.springs[1].point.count = 5, GX_ERROR_ARGUMENT, "springs.point.copies", 1);
     attempt_with(SPAN(a.springs[1].point, 4, NULL, weights), GX_ERROR_ARGUMENT, "springs.point.copies", 1);
     attempt_with(SPAN(a.springs[1].point, 6, copies, NULL), GX_ERROR_ARGUMENT, "springs.point.weights", 1);
-    attempt_with(SPAN(a.springs[1].point, 33, copies, weights), GX_ERROR_LIMIT, "springs.point.count", 1);
+    attempt_with(SPAN(a.springs[1].point, GXS_POINT_MOST + 1, copies, weights), GX_ERROR_LIMIT, "springs.point.count",
+                 1);
     attempt_with(SPAN(a.springs[1].point, 6, beyond, weights), GX_ERROR_INDEX, "springs.point.copies", 1);
     attempt_with(SPAN(a.springs[1].point, 6, copies, bad), GX_ERROR_NOT_FINITE, "springs.point.weights", 1);
     attempt_with(a.points[2].count = 0, GX_ERROR_ARGUMENT, "points.count", 2);
-    attempt_with(SPAN(a.points[2], 33, copies, weights), GX_ERROR_LIMIT, "points.count", 2);
+    attempt_with(SPAN(a.points[2], GXS_POINT_MOST + 1, copies, weights), GX_ERROR_LIMIT, "points.count", 2);
     attempt_with(SPAN(a.points[2], 6, beyond, weights), GX_ERROR_INDEX, "points.copies", 2);
     attempt_with(SPAN(a.points[2], 6, copies, bad), GX_ERROR_NOT_FINITE, "points.weights", 2);
 #undef SPAN
