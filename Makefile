@@ -268,8 +268,9 @@ check-settled:
 	@$(MAKE) --no-print-directory -k -j$(JOBS) $(or $(TESTS:%=run-%),check-programs) BUILD=$(BUILD)/settled CFLAGS="$(settles)" \
 	    tests="$(filter-out test_baselines,$(tests))"
 
+# All but the longest
 sanitize-scenes:
-	@$(MAKE) --no-print-directory -j$(JOBS) scenes SMALL=1 BUILD=$(BUILD)/sanitize CFLAGS="$(sanitizers)"
+	@$(MAKE) --no-print-directory -j$(JOBS) scenes SMALL=1 BUILD=$(BUILD)/sanitize CFLAGS="$(sanitizers)" scenes="$(filter-out trainer,$(scenes))"
 
 # By libFuzzer (with sanitizers) if clang has it, starting from the corpus, for SECONDS. Otherwise, or with SEED or CASES, a loop over
 # seeds.
