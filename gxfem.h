@@ -1243,8 +1243,8 @@ typedef struct gxp_attached { /* of a step: what it has at anchors and regions, 
     gxs_spring *springs;
     gxs_point *points;
     gxs_pair *pairs;
-    gxp_words sides; /* pairs x 8: copies of their two sides */
-    double *weights; /* pairs x 8: of these copies */
+    gxp_words sides; /* pairs x 2 x gxp_side_room: vectors of their two sides */
+    double *weights; /* as many: of these vectors */
     double *forces;  /* copies x 3, N: all that are given */
     double *targets; /* copies x 3, m: of held copies */
     uint32_t spring_capacity, point_capacity, pair_capacity, weight_capacity, force_capacity, target_capacity;
@@ -1633,7 +1633,7 @@ typedef struct gxp_touch {
     double *moved;           /* vertices x 9: position and velocity in space, outward normal */
     double *facing;          /* facets x 3: normals in space, of length 1, or 0 */
     gxp_touch_box *boxes;    /* a complete binary tree over the facets, GXP_TOUCH_LEAF in each of its leaves */
-    gxp_words sides;         /* pairs x GXP_TOUCH_COPIES: copies of their points */
+    gxp_words sides;         /* pairs x gxp_pair_span: vectors of their points */
     double *weights;         /* likewise */
     double *slips, *forces;  /* all pairs of the step x 3 */
     gxp_keys order;          /* facets; places of vertices; samples beside colliders */
@@ -1650,7 +1650,7 @@ typedef struct gxp_touch {
     uint32_t pair_capacity, moved_capacity, facing_capacity, box_capacity, weight_capacity, slip_capacity,
         force_capacity;
 } gxp_touch;
-#define GXP_TOUCH_COPIES 16u /* of a pair at most: those of a vertex and of a facet's corners */
+#define GXP_TOUCH_COPIES 16u /* copies of a pair at most: those of a vertex and of a facet's corners */
 
 /* The boundary of a cell or leaf, as triangles in barycentric coordinates of its element */
 typedef struct gxp_boundary {

@@ -43,9 +43,8 @@
  *                 >>pattern of level 1 | >>hierarchy all levels | >>lights copies with next to no mass |
  *                 >>sharing of memory | >>system a model in the solver's form
  *   operator:     >>rule elements with affine copies | >>forces energies, forces | >>blocks 3x3 blocks |
- *                 >>strains forces and Hessians in single precision | >>singles affine copies' products | >>product
- * single precision | >>doubles double precision |
- *                 >>linearise Hessians, block diagonal
+ *                 >>strains forces, exact Hessians in single precision | >>singles affine copies' products |
+ *                 >>product single precision | >>doubles double precision | >>linearise Hessians, block diagonal
  *   multigrid:    >>galerkin coarse matrices | >>nesting those of affine copies | >>factor of the last level |
  *                 >>assembly the assembled matrix | >>smoother its step length | >>cycle the V-cycle
  *   changes:      >>edits lanes that a cut changes | >>affine-edits those of affine copies |
