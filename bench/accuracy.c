@@ -120,7 +120,7 @@ static void series_row(series *s, size_t elements, double n, double value, doubl
 
 /* The largest force on a free copy, found without the solver's own residual */
 static double measure_imbalance(const scene *s) {
-    double *g = (double *)zeroed(3 * s->model.copy_count, sizeof(double)), left = 0, largest = 0;
+    double *g = (double *)memory(3 * s->model.copy_count, sizeof(double)), left = 0, largest = 0;
     size_t i;
     form_gradient(&s->model, s->displacement, g);
     for (i = 0; i < 3 * s->model.copy_count; i++) {
@@ -161,7 +161,7 @@ static double energy(const scene *s) {
 
 /* dU/du. On held copies it is the force that holds them; applied forces are subtracted. */
 static double *reactions(const scene *s) {
-    double *g = (double *)zeroed(3 * s->model.copy_count, sizeof(double));
+    double *g = (double *)memory(3 * s->model.copy_count, sizeof(double));
     size_t i;
     form_gradient(&s->model, s->displacement, g);
     for (i = 0; i < s->model.copy_count; i++)
@@ -715,7 +715,7 @@ static void cook_averaged(const cook *c) {
             a.mu = c->young / (2 * (1 + c->poisson));
             a.lambda = c->young * c->poisson / ((1 + c->poisson) * (1 - 2 * c->poisson));
             a.on = on;
-            a.volume = (double *)zeroed(2 * s->model.copy_count, sizeof(double));
+            a.volume = (double *)memory(2 * s->model.copy_count, sizeof(double));
             a.change = a.volume + s->model.copy_count;
             memset(&report, 0, sizeof report);
             imbalance = 1e-8;
@@ -960,7 +960,7 @@ static void mesh_prism(const uint32_t triangle[3], uint32_t below, uint32_t abov
 
 static mesh mesh_cylinder(size_t n) {
     size_t disc = 1 + 3 * n * (n + 1), triangles = 6 * n * n, layer, k, i, count = 0;
-    uint32_t(*triangle)[3] = (uint32_t(*)[3])zeroed(triangles, sizeof *triangle);
+    uint32_t(*triangle)[3] = (uint32_t(*)[3])memory(triangles, sizeof *triangle);
     mesh m = mesh_make(disc * (n + 1), 3 * triangles * n);
     for (layer = 0; layer <= n; layer++)
         for (k = 0; k <= n; k++)

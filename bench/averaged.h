@@ -50,7 +50,7 @@ static void averaged_product(averaged *a, const double *x, double *y) {
 /* Solves K x = f to 1e-8 by conjugate gradients with the diagonal. Returns how many iterations that took. */
 static size_t averaged_solve(averaged *a, const double *f, double *x) {
     const size_t n = 3 * a->model->copy_count;
-    double *r = (double *)zeroed(5 * n, sizeof *r), *z = r + n, *p = z + n, *q = p + n, *inverse = q + n;
+    double *r = (double *)memory(5 * n, sizeof *r), *z = r + n, *p = z + n, *q = p + n, *inverse = q + n;
     double gain, next = 0, first = 0;
     size_t e, i, count;
     int k, c;

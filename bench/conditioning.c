@@ -29,6 +29,8 @@
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
 
+#define BENCH "conditioning"
+#include "expect.h"
 #include "csv.h"
 #include "progress.h"
 #include "rxfem.h"
@@ -44,12 +46,6 @@ static const double young = 1e6, poisson = 0.3, density = 1000, dt = 1e-3;
 
 static const double corners[24] = {-1, -1, -1, 1, -1, -1, -1, 1, -1, 1, 1, -1, -1, -1, 1, 1, -1, 1, -1, 1, 1, 1, 1, 1};
 static const uint32_t tetrahedra[20] = {0, 5, 3, 6, 1, 3, 0, 5, 2, 0, 3, 6, 4, 6, 5, 0, 7, 5, 6, 3};
-
-static void expect(int holds, const char *what) {
-    if (holds) return;
-    fprintf(stderr, "conditioning: %s\n", what);
-    exit(1);
-}
 
 /* The copies of a cut cube that follow no others ("free"), and its matrix */
 typedef struct cube {

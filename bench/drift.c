@@ -93,7 +93,7 @@ static void drift_update(drift *d, const invariants *start, const invariants *no
 static void pull(scene *s) {
     gxs_step_desc step;
     size_t count = 3 * s->model.copy_count, i;
-    double *a = (double *)zeroed(count, sizeof(double));
+    double *a = (double *)memory(count, sizeof(double));
     for (i = 2; i < count; i += 3)
         a[i] = strain * young / density * pi / length * sin(pi * (s->rest[i] - centre[2]) / length);
     form_mass_product(&s->model, a, s->forces);
@@ -128,7 +128,7 @@ static scene *free_body(void) {
 static scene *run(gxs_integrator integrator, size_t steps, drift *worst) {
     scene *s = free_body();
     size_t count = 3 * s->model.copy_count, i;
-    double *before = (double *)zeroed(2 * count, sizeof(double)), *momentum = (double *)zeroed(count, sizeof(double));
+    double *before = (double *)memory(2 * count, sizeof(double)), *momentum = (double *)memory(count, sizeof(double));
     invariants start = measure(s, momentum), now;
     gxs_step_desc step;
     memset(&step, 0, sizeof step);
@@ -139,7 +139,7 @@ static scene *run(gxs_integrator integrator, size_t steps, drift *worst) {
     step.newton_tolerance = 1e-12;
     step.cg_tolerance = 1e-6;
     for (i = 0; i < steps; i++) {
-        double *kept = (double *)zeroed(2 * count, sizeof(double));
+        double *kept = (double *)memory(2 * count, sizeof(double));
         memcpy(kept, s->displacement, count * sizeof(double));
         memcpy(kept + count, s->velocity, count * sizeof(double));
         step.previous_displacement = i > 0 ? before : NULL;
@@ -160,7 +160,7 @@ static double *reference(void) {
     size_t steps = (size_t)(duration / finest + 0.5), i;
     drift ignored;
     scene *fine = run(GXS_MIDPOINT, steps, &ignored), *coarse = run(GXS_MIDPOINT, steps / 2, &ignored);
-    double *u = (double *)zeroed(3 * fine->model.copy_count, sizeof(double));
+    double *u = (double *)memory(3 * fine->model.copy_count, sizeof(double));
     for (i = 0; i < 3 * fine->model.copy_count; i++)
         u[i] = fine->displacement[i] + (fine->displacement[i] - coarse->displacement[i]) / 3;
     scene_free(fine);

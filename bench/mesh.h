@@ -9,6 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "expect.h"
+
 /* Nodes may be moved before a scene is made of it. */
 typedef struct mesh {
     double *positions;  /* node_count x 3, m */
@@ -28,22 +30,10 @@ typedef struct scene {
     gxs_solver *solver;
 } scene;
 
-static void expect(int holds, const char *what) {
-    if (holds) return;
-    fprintf(stderr, "bench: %s\n", what);
-    exit(1);
-}
-
-static void *zeroed(size_t count, size_t size) {
-    void *memory = calloc(count, size);
-    expect(memory != NULL, "no memory");
-    return memory;
-}
-
 static mesh mesh_make(size_t node_count, size_t element_count) {
     mesh m;
-    m.positions = (double *)zeroed(3 * node_count, sizeof(double));
-    m.elements = (uint32_t *)zeroed(4 * element_count, sizeof(uint32_t));
+    m.positions = (double *)memory(3 * node_count, sizeof(double));
+    m.elements = (uint32_t *)memory(4 * element_count, sizeof(uint32_t));
     m.node_count = node_count;
     m.element_count = element_count;
     return m;
@@ -125,15 +115,15 @@ static void scene_element(gxs_element *element, const double *positions, double 
 
 /* Everything at rest, nothing held; the solver gets the model at the first step. */
 static scene *scene_make(const mesh *m, gxs_material_kind kind, double young, double poisson, double density) {
-    scene *s = (scene *)zeroed(1, sizeof *s);
+    scene *s = (scene *)memory(1, sizeof *s);
     size_t e, n = m->node_count;
-    s->elements = (gxs_element *)zeroed(m->element_count, sizeof *s->elements);
-    s->held = (uint8_t *)zeroed(n, 1);
-    s->rest = (double *)zeroed(3 * n, sizeof(double));
-    s->displacement = (double *)zeroed(3 * n, sizeof(double));
-    s->velocity = (double *)zeroed(3 * n, sizeof(double));
-    s->forces = (double *)zeroed(3 * n, sizeof(double));
-    s->targets = (double *)zeroed(3 * n, sizeof(double));
+    s->elements = (gxs_element *)memory(m->element_count, sizeof *s->elements);
+    s->held = (uint8_t *)memory(n, 1);
+    s->rest = (double *)memory(3 * n, sizeof(double));
+    s->displacement = (double *)memory(3 * n, sizeof(double));
+    s->velocity = (double *)memory(3 * n, sizeof(double));
+    s->forces = (double *)memory(3 * n, sizeof(double));
+    s->targets = (double *)memory(3 * n, sizeof(double));
     memcpy(s->rest, m->positions, 3 * n * sizeof(double));
     for (e = 0; e < m->element_count; e++) {
         memcpy(s->elements[e].copy, m->elements + 4 * e, sizeof s->elements[e].copy);

@@ -35,6 +35,8 @@
 #define _POSIX_C_SOURCE 200809L
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
+#define BENCH "quadrature"
+#include "expect.h"
 #include "clock.h"
 #include "csv.h"
 #include "part.h"
@@ -68,12 +70,6 @@ typedef struct run {
     size_t points;
     double geometry, rule, evaluate; /* us */
 } run;
-
-static void expect(int holds, const char *what) {
-    if (holds) return;
-    fprintf(stderr, "quadrature: %s\n", what);
-    exit(1);
-}
 
 /* ---- regions ---- */
 

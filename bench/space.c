@@ -28,6 +28,8 @@
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
 #include "../examples/gxio.h"
+#define BENCH "space"
+#include "expect.h"
 #include "csv.h"
 #include "progress.h"
 #include "part.h"
@@ -40,18 +42,6 @@ enum { PIECES = 5, FOLDS = 6, LEVELS = 2 * FOLDS + 2, CORNERS = 4, CUT = 0, VNA,
 
 static const char *const method_names[METHODS] = {"cut", "VNA", "deletion", "conforming"};
 static const double density = 1000, young = 3e7, poisson = 0.4, gravity = -9.81;
-
-static void expect(int holds, const char *what) {
-    if (holds) return;
-    fprintf(stderr, "space: %s\n", what);
-    exit(1);
-}
-
-static void *memory(size_t count, size_t size) {
-    void *room = calloc(count + 1, size);
-    expect(room != NULL, "no memory");
-    return room;
-}
 
 /* ---- what is compared ---- */
 

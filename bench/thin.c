@@ -26,6 +26,8 @@
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
 #include "../examples/gxio.h"
+#define BENCH "thin"
+#include "expect.h"
 #include "clock.h"
 #include "csv.h"
 #include "progress.h"
@@ -35,18 +37,6 @@ enum { TRIANGLES = 12, PLACEMENTS = 9, MESHES = 5, SLICES = 5, MOST_NEWTON = 5, 
 static const double density = 1000;
 static int small;
 static size_t done, total;
-
-static void expect(int holds, const char *what) {
-    if (holds) return;
-    fprintf(stderr, "thin: %s\n", what);
-    exit(1);
-}
-
-static void *memory(size_t count, size_t size) {
-    void *room = calloc(count + 1, size);
-    expect(room != NULL, "no memory");
-    return room;
-}
 
 #include "plate.h"
 

@@ -10,6 +10,7 @@
 #include "../gxfem_boolean.h"
 #include "../examples/gxio.h"
 #include "boolean_oracle.h"
+#include "operand.h"
 #include "runner.h"
 
 enum { PLANES = 80, PIECES = 60000, MCUT_PAIRS = 32 };
@@ -121,14 +122,7 @@ typedef struct answer {
 } answer;
 
 static gxb_operand operand_of(const gxio_surface *s, uint32_t operation) {
-    gxb_operand o;
-    memset(&o, 0, sizeof o);
-    o.vertices = s->vertices;
-    o.vertex_count = s->vertex_count;
-    o.triangles = s->triangles;
-    o.triangle_count = s->triangle_count;
-    o.operation = operation;
-    return o;
+    return operand_from(s->vertices, s->vertex_count, s->triangles, s->triangle_count, operation);
 }
 
 static answer combine(const gxio_surface *s, size_t count, uint32_t operation) {

@@ -6,6 +6,7 @@
 #include "../gxfem_boolean.h"
 #include "../bench/splitmix.h"
 #include "workloads.h"
+#include "operand.h"
 #include "runner.h"
 #include "scarce.h"
 
@@ -21,14 +22,7 @@ static int random_below(int n) { return (int)(random_bits() % (uint64_t)n); }
 /* ---- operands and answers ---- */
 
 static gxb_operand operand_of(const wl_surface *s, uint32_t operation) {
-    gxb_operand o;
-    memset(&o, 0, sizeof o);
-    o.vertices = s->vertices;
-    o.vertex_count = s->vertex_count;
-    o.triangles = s->triangles;
-    o.triangle_count = s->triangle_count;
-    o.operation = operation;
-    return o;
+    return operand_from(s->vertices, s->vertex_count, s->triangles, s->triangle_count, operation);
 }
 
 static void surface_free(wl_surface *s) {

@@ -6,6 +6,7 @@
 #define GXFEM_BOOLEAN_IMPLEMENTATION
 #include "../gxfem_boolean.h"
 #include "fuzz_cases.h"
+#include "operand.h"
 #include "runner.h"
 #include "workloads.h"
 
@@ -19,14 +20,7 @@ enum { CASES = 600 };
 static int same_bits(const void *a, const void *b, size_t size) { return size == 0 || memcmp(a, b, size) == 0; }
 
 static gxb_operand operand_of(const wl_surface *s, uint32_t operation) {
-    gxb_operand o;
-    memset(&o, 0, sizeof o);
-    o.vertices = s->vertices;
-    o.vertex_count = s->vertex_count;
-    o.triangles = s->triangles;
-    o.triangle_count = s->triangle_count;
-    o.operation = operation;
-    return o;
+    return operand_from(s->vertices, s->vertex_count, s->triangles, s->triangle_count, operation);
 }
 
 /* ---- the same bits ---- */
