@@ -258,8 +258,9 @@ typedef struct gxs_element {
     uint32_t group;
 } gxs_element;
 
-/* A copy that follows others: in every step its displacement changes by the weighted sum of the changes of theirs. A
- * held copy follows nothing. Masters follow nothing themselves. */
+/* A copy that follows others: in every step its displacement changes by the weighted sum of the changes of theirs. An
+ * affine copy (gxs_model.affine) follows their field: by the sum of w_k (a_k + A_k (X - X_k)), and its A by that of
+ * w_k A_k; the model then has positions. A held copy follows nothing. Masters follow nothing themselves. */
 typedef struct gxs_constraint {
     uint32_t copy;
     uint32_t master[4]; /* below copy_count, also where the weight is 0 */
@@ -288,9 +289,9 @@ typedef struct gxs_model {
     /* copy_count; NULL: none. For an affine copy i the index of the first of three vectors, hidden ones, that follow
      * each other below copy_count: the columns of A_i times affine_length. GXS_NOT_AFFINE for every other entry. Where
      * an element has an affine copy, u = sum N_i (a_i + A_i (x - X_i)), with A = 0 for its other copies. So a sheet
-     * thinner than its elements bends as it should. A hidden vector is no element's copy, is held if its copy is, and
-     * follows and leads nothing; nor does an affine copy. A target of a held one is its A. Not with lumped_mass,
-     * GXS_MATRIX_ASSEMBLED and GXS_VOLUME_RATIO. */
+     * thinner than its elements bends as it should. A hidden vector is no element's copy, is held if its copy is, and is
+     * in no constraint. A target of a held one is its A. Not with lumped_mass, GXS_MATRIX_ASSEMBLED and
+     * GXS_VOLUME_RATIO. */
     const uint32_t *affine;
     double affine_length; /* m, above 0 where copies are affine: about an element's size */
 } gxs_model;
@@ -1541,10 +1542,11 @@ typedef struct gxsp_component {
     uint32_t state;     /* GXSP_HELD ... GXSP_TOUCHES. 0: loose, so that a translation of it meets no stiffness */
 } gxsp_component;
 
-/* A copy that follows others */
+/* A copy, or a hidden vector of one, that follows others. The first four masters are the constraint's, or hidden vectors
+ * of these; behind them, where an affine copy follows affine ones, the hidden vectors of these. */
 typedef struct gxsp_follower {
-    uint32_t copy, master[4];
-    double weight[4];
+    uint32_t copy, count, master[16];
+    double weight[16];
 } gxsp_follower;
 
 /* A copy with next to none of the mass around it, such as the far corner of an element's thin rest after a cut; and
@@ -4092,9 +4094,10 @@ static size_t gxsp_bad_constraint(const gxs_constraint *constraints, size_t coun
     return SIZE_MAX;
 }
 
-/* Room for so many followers, and for the copies that there are */
+/* Room for the followers of so many constraints, and for the copies that there are */
 static void gxsp_followers_room(gxsp_system *system, size_t count) {
     gxsp_model *model = &system->model;
+    if (system->affine.group_count > 0) count *= 4;
     if (count > model->follower_room) {
         model->follower_room = (uint32_t)gxsp_room(count);
         model->followers =
@@ -4102,6 +4105,42 @@ static void gxsp_followers_room(gxsp_system *system, size_t count) {
     }
     if (count > 0 && !model->follower)
         model->follower = (uint32_t *)gxsp_take(&system->pool, model->copy_room, sizeof(uint32_t));
+}
+
+/* Makes a vector follow those of a constraint, and returns the follower. */
+static gxsp_follower *gxsp_add_follower(gxsp_system *system, uint32_t vector, const gxs_constraint *constraint) {
+    gxsp_follower *follower = &system->model.followers[system->model.follower_count];
+    follower->copy = vector;
+    follower->count = 4;
+    memcpy(follower->master, constraint->master, sizeof constraint->master);
+    memcpy(follower->weight, constraint->weight, sizeof constraint->weight);
+    system->model.fixed[vector] = 0;
+    system->model.follower[vector] = system->model.follower_count++;
+    return follower;
+}
+
+/* An affine copy i follows the field of its masters k, a_i = sum w_k (a_k + A_k (X_i - X_k)), A_i = sum w_k A_k, so it
+ * bends as they do. follower: that of a_i, with sum w_k a_k */
+static void gxsp_follow_field(gxsp_system *system, gxsp_follower *follower, const gxs_constraint *constraint) {
+    const gxsp_affine *affine = &system->affine;
+    const double *x = system->model.positions + 3 * (size_t)constraint->copy;
+    gxs_constraint column = *constraint; /* of A_i */
+    uint32_t a, k;
+    for (k = 0; k < 4; k++)
+        for (a = 0; a < 3 && affine->place[constraint->master[k]] != GXSP_NONE; a++) {
+            const double *from = system->model.positions + 3 * (size_t)constraint->master[k];
+            if (!(fabs(constraint->weight[k]) > 0)) continue;
+            follower->master[follower->count] = affine->member[affine->place[constraint->master[k]] / 4][a + 1];
+            follower->weight[follower->count++] = constraint->weight[k] * (x[a] - from[a]) / affine->length;
+        }
+    for (a = 1; a < 4; a++) {
+        for (k = 0; k < 4; k++)
+            if (affine->place[constraint->master[k]] != GXSP_NONE)
+                column.master[k] = affine->member[affine->place[constraint->master[k]] / 4][a];
+            else
+                column.weight[k] = 0;
+        (void)gxsp_add_follower(system, affine->member[affine->place[constraint->copy] / 4][a], &column);
+    }
 }
 
 /* Sets the followers. None of them is fixed unless it is held. */
@@ -4112,22 +4151,20 @@ static void gxsp_set_followers(gxsp_system *system, const gxs_constraint *constr
     if (system->pool.failed || count == 0) return;
     memset(system->model.follower, 0xff, system->model.n * sizeof *system->model.follower);
     for (i = 0; i < count; i++) {
-        gxsp_follower *follower = &system->model.followers[system->model.follower_count];
+        gxsp_follower *follower;
         if (system->model.held[constraints[i].copy]) continue;
-        follower->copy = constraints[i].copy;
-        memcpy(follower->master, constraints[i].master, sizeof follower->master);
-        memcpy(follower->weight, constraints[i].weight, sizeof follower->weight);
-        system->model.fixed[follower->copy] = 0;
-        system->model.follower[follower->copy] = system->model.follower_count++;
+        follower = gxsp_add_follower(system, constraints[i].copy, &constraints[i]);
+        if (system->affine.place && system->affine.place[follower->copy] != GXSP_NONE)
+            gxsp_follow_field(system, follower, &constraints[i]);
     }
 }
 
 /* Joins copies that constraints couple. forest: n */
 static void gxsp_join_followers(const gxsp_system *system, uint32_t *forest) {
     size_t i;
-    int k;
+    uint32_t k;
     for (i = 0; i < system->model.follower_count; i++)
-        for (k = 0; k < 4; k++)
+        for (k = 0; k < system->model.followers[i].count; k++)
             if (fabs(system->model.followers[i].weight[k]) > 0)
                 gxsp_join(forest, system->model.followers[i].copy, system->model.followers[i].master[k]);
 }
@@ -4167,6 +4204,7 @@ static void gxsp_fill_components(gxsp_system *system) {
     }
     for (i = 0; i < system->model.follower_count; i++) {
         const double *w = system->model.followers[i].weight;
+        if (gxsp_is_hidden(system, system->model.followers[i].copy)) continue;
         if (fabs(w[0] + w[1] + w[2] + w[3] - 1) > 1e-12)
             system->model.components[system->model.component[system->model.followers[i].copy]].state |= GXSP_UNBALANCED;
     }
@@ -4238,7 +4276,7 @@ static int gxsp_corner_masters(const gxsp_system *system, uint32_t copy, uint32_
         return 1;
     }
     follower = &system->model.followers[system->model.follower[copy]];
-    for (k = 0; k < 4; k++)
+    for (k = 0; k < 4; k++) /* what follows as a field is no corner in a chunk */
         if (fabs(follower->weight[k]) > 0) {
             masters[count] = follower->master[k];
             weights[count++] = (float)follower->weight[k];
@@ -4262,7 +4300,7 @@ static void gxsp_extend(const gxsp_system *system, gxsp_vector4 *x) {
     for (i = 0; i < system->model.follower_count; i++) {
         const gxsp_follower *follower = &system->model.followers[i];
         gxsp_vector4 sum = {0, 0, 0, 0};
-        for (k = 0; k < 4; k++)
+        for (k = 0; k < follower->count; k++)
             for (c = 0; c < 3; c++) sum[c] += (float)follower->weight[k] * x[follower->master[k]][c];
         memcpy(x[follower->copy], sum, sizeof sum);
     }
@@ -4273,7 +4311,7 @@ static void gxsp_reduce(const gxsp_system *system, gxsp_vector4 *y) {
     uint32_t i, k, c;
     for (i = 0; i < system->model.follower_count; i++) {
         const gxsp_follower *follower = &system->model.followers[i];
-        for (k = 0; k < 4; k++)
+        for (k = 0; k < follower->count; k++)
             for (c = 0; c < 3; c++) y[follower->master[k]][c] += (float)follower->weight[k] * y[follower->copy][c];
         memset(y[follower->copy], 0, sizeof *y);
     }
@@ -4287,7 +4325,7 @@ static void gxsp_follow(const gxsp_system *system, const double *from, double *d
         double *to = displacement + 3 * (size_t)follower->copy;
         for (c = 0; c < 3; c++) {
             double sum = from ? from[3 * (size_t)follower->copy + c] : 0;
-            for (k = 0; k < 4; k++) {
+            for (k = 0; k < follower->count; k++) {
                 const size_t master = 3 * (size_t)follower->master[k] + c;
                 sum += follower->weight[k] * (displacement[master] - (from ? from[master] : 0));
             }
@@ -4301,7 +4339,7 @@ static void gxsp_reduce_residual(const gxsp_system *system, const uint8_t *still
     uint32_t i, k, c;
     for (i = 0; i < system->model.follower_count; i++) {
         const gxsp_follower *follower = &system->model.followers[i];
-        for (k = 0; k < 4; k++)
+        for (k = 0; k < follower->count; k++)
             for (c = 0; c < 3 && !still[follower->master[k]]; c++)
                 r[3 * (size_t)follower->master[k] + c] += follower->weight[k] * r[3 * (size_t)follower->copy + c];
         memset(r + 3 * (size_t)follower->copy, 0, 3 * sizeof *r);
@@ -4313,15 +4351,16 @@ static void gxsp_reduce_residual(const gxsp_system *system, const uint8_t *still
 static void gxsp_copy_direction(const gxsp_pass *pass, uint32_t copy, double *GXSP_RESTRICT to) {
     const gxsp_system *system = pass->system;
     const double *from = pass->from + 3 * (size_t)copy;
+    const gxsp_follower *follower;
     double factor = system->model.fixed[copy] ? 0 : pass->factor;
-    int k, c;
+    uint32_t k, c;
     if (!gxsp_follows(system, copy)) {
         to[0] = factor * from[0], to[1] = factor * from[1], to[2] = factor * from[2];
         return;
     }
     to[0] = to[1] = to[2] = 0;
-    for (k = 0; k < 4; k++) {
-        const gxsp_follower *follower = &system->model.followers[system->model.follower[copy]];
+    follower = &system->model.followers[system->model.follower[copy]];
+    for (k = 0; k < follower->count; k++) {
         from = pass->from + 3 * (size_t)follower->master[k];
         factor = system->model.fixed[follower->master[k]] ? 0 : pass->factor * follower->weight[k];
         for (c = 0; c < 3; c++) to[c] += factor * from[c];
@@ -5210,7 +5249,8 @@ static uint32_t gxsp_first_transfer(gxsp_system *system, float (*place)[3], cons
                             copies[system->multigrid.edges.ends[e] & 0xffff]);
     }
     for (e = 0; e < 4 * system->model.follower_count; e++)
-        if (fabs(system->model.followers[e / 4].weight[e % 4]) > 0)
+        if (!gxsp_is_hidden(system, system->model.followers[e / 4].copy) &&
+            fabs(system->model.followers[e / 4].weight[e % 4]) > 0)
             gxsp_join_nodes(transfer, system->model.followers[e / 4].copy,
                             system->model.followers[e / 4].master[e % 4]);
     gxsp_nested_join(system, transfer);
@@ -6095,7 +6135,8 @@ static void gxsp_affine_invert(const gxsp_system *system, uint32_t group) {
             a[i][j] = i / 3 <= j / 3 ? from[3 * (i % 3) + j % 3] : from[3 * (j % 3) + i % 3];
         }
     for (i = 0; i < 12; i++)
-        scale[i] = !system->state.still[affine->member[group][i / 3]] && a[i][i] > GXSP_TINY ? 1 / sqrt(a[i][i]) : 0;
+        scale[i] = !system->state.still[affine->member[group][i / 3]] &&
+                           !gxsp_follows(system, affine->member[group][i / 3]) && a[i][i] > GXSP_TINY ? 1 / sqrt(a[i][i]) : 0;
     memset(w, 0, sizeof w);
     for (i = 0; i < 12; i++) { /* Cholesky of the block with a diagonal of 1 */
         for (j = 0; j <= i; j++) {
@@ -6131,7 +6172,10 @@ static void gxsp_affine_diagonal(gxsp_system *system, double rate) {
     for (group = 0; group < affine->group_count; group++) {
         for (p = 0; p < 4; p++)
             for (k = 0; k < 6; k++)
-                affine->own[affine->member[group][p]][k] = affine->full[group][gxsp_packed_mass[p][p]][packed[k]];
+                affine->own[affine->member[group][p]][k] =
+                    gxsp_follows(system, affine->member[group][p])
+                        ? 0
+                        : affine->full[group][gxsp_packed_mass[p][p]][packed[k]];
         gxsp_affine_invert(system, group);
     }
 }
@@ -9326,10 +9370,16 @@ static void gxsp_move_copies(gxsp_renewal *update) {
 /* Is a follower the same as before, but for the numbers of copies? */
 static int gxsp_follows_alike(const gxsp_renewal *update, const gxsp_follower *follower,
                               const gxs_constraint *constraint) {
+    const uint32_t *affine = update->change->affine;
+    uint32_t count = 4;
     int k;
-    for (k = 0; k < 4; k++)
+    for (k = 0; k < 4; k++) {
         if (update->successor[follower->master[k]] != constraint->master[k]) return 0;
-    return memcmp(follower->weight, constraint->weight, sizeof follower->weight) == 0;
+        if (affine && affine[constraint->copy] != GXS_NOT_AFFINE && affine[constraint->master[k]] != GXS_NOT_AFFINE &&
+            fabs(constraint->weight[k]) > 0)
+            count += 3;
+    }
+    return follower->count == count && memcmp(follower->weight, constraint->weight, sizeof constraint->weight) == 0;
 }
 
 /* Touches copies that begin or cease to follow others, and their masters, and marks the coarse nodes of both as
@@ -9347,6 +9397,7 @@ static void gxsp_touch_followers(gxsp_renewal *update) {
     }
     for (i = 0; i < system->model.follower_count; i++) { /* followers before the update */
         const uint32_t copy = system->model.followers[i].copy;
+        if (gxsp_is_hidden(system, copy)) continue; /* its copy is touched */
         if (update->successor[copy] != GXSP_NONE && update->alike[update->successor[copy]]) continue;
         for (k = -1; k < 4; k++) {
             const uint32_t other = k < 0 ? copy : system->model.followers[i].master[k];
@@ -9472,7 +9523,8 @@ static void gxsp_join_dirty(gxsp_renewal *update, uint32_t *forest) {
                               copies[system->multigrid.edges.ends[e] & 0xffff], forest);
     }
     for (e = 0; e < 4 * system->model.follower_count; e++)
-        if (fabs(system->model.followers[e / 4].weight[e % 4]) > 0)
+        if (!gxsp_is_hidden(system, system->model.followers[e / 4].copy) &&
+            fabs(system->model.followers[e / 4].weight[e % 4]) > 0)
             gxsp_join_parents(update, system->model.followers[e / 4].copy, system->model.followers[e / 4].master[e % 4],
                               forest);
     for (c = 0; c < system->affine.block_count; c++)
@@ -12652,9 +12704,11 @@ static gx_result gxsp_check_affine(const gxs_model *model, const gxs_solver *sol
     if (solver->matrix == GXS_MATRIX_ASSEMBLED) return gxsp_refuse(failure, "matrix");
     if (solver->preconditioner == GXS_VOLUME_RATIO) return gxsp_refuse(failure, "preconditioner");
     for (i = 0; i < model->constraint_count; i++)
-        for (k = 0; k < 5; k++)
-            if (owned[k < 4 ? model->constraints[i].master[k] : model->constraints[i].copy])
-                return gxsp_fail(failure, GX_ERROR_ARGUMENT, "constraints", i);
+        for (k = 0; k < 5; k++) {
+            const uint8_t kind = owned[k < 4 ? model->constraints[i].master[k] : model->constraints[i].copy];
+            if (kind == 1 || (kind == 2 && k == 4 && !model->positions))
+                return gxsp_fail(failure, GX_ERROR_ARGUMENT, kind == 1 ? "constraints" : "positions", i);
+        }
     for (i = 0; i < model->element_count; i++) {
         double edge[3][3];
         for (k = 0; k < 4; k++)
@@ -12885,6 +12939,7 @@ static gx_result gxsp_check_changed_affine(const gxs_solver *solver, const gxs_c
     if (!owned) return GX_OK; /* without memory the caller fails */
     memset(&model, 0, sizeof model);
     model.copy_count = change->copy_count;
+    model.positions = solver->system->model.positions;
     model.held = change->held;
     model.affine = change->affine;
     model.affine_length = solver->system->affine.place ? solver->system->affine.length : 1;
