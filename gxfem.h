@@ -580,7 +580,7 @@ typedef gxs_step_report gx_step_report;
    compared with its fullest part. It moves as a point if that part is smaller than support_below of its element.
    Where support_below is 0, it moves as a point if that part is smaller than 1e-9 or if no part reaches a tenth as far
    as its element.
-   Affine copies neither follow nor lead, but those of a fragment that moves as a point do. A point with affine copies
+   An affine copy that follows takes its A from that field too. A point with affine copies
    is moved as the material at its position at rest is. forces act on displacements alone, anchor_forces on A too;
    targets leave A as it is, poses turn it. Thin sheets that are flung turn far in a step, and one Newton iteration lags
    by half of the motion: newton_iterations 0 then takes two to forty, until the motion is within 5 %. Pairs without

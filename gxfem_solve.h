@@ -289,8 +289,8 @@ typedef struct gxs_model {
     /* copy_count; NULL: none. For an affine copy i the index of the first of three vectors, hidden ones, that follow
      * each other below copy_count: the columns of A_i times affine_length. GXS_NOT_AFFINE for every other entry. Where
      * an element has an affine copy, u = sum N_i (a_i + A_i (x - X_i)), with A = 0 for its other copies. So a sheet
-     * thinner than its elements bends as it should. A hidden vector is no element's copy, is held if its copy is, and is
-     * in no constraint. A target of a held one is its A. Not with lumped_mass, GXS_MATRIX_ASSEMBLED and
+     * thinner than its elements bends as it should. A hidden vector is no element's copy, is held if its copy is, and
+     * is in no constraint. A target of a held one is its A. Not with lumped_mass, GXS_MATRIX_ASSEMBLED and
      * GXS_VOLUME_RATIO. */
     const uint32_t *affine;
     double affine_length; /* m, above 0 where copies are affine: about an element's size */
@@ -844,6 +844,13 @@ extern "C" {
 #define GXSP_NESTED_COST 12
 #define GXSP_NESTED_FROM 0.8f
 #define GXSP_WIDEST      8
+
+/* Some fields have many descriptions by affine copies, and rounding alone would choose among them. Level 1 ties A to
+ * the gradient around it, by this share of the stiffness (>>nesting), and steps start from where it is so much closer
+ * to that (>>balance). With ties of 1e-3 clamped slabs take twice the iterations; with 1e-6 rounding moves A thirty
+ * times as far in slices that are pressed. */
+#define GXSP_TIE  1e-4
+#define GXSP_CALM 0.1
 
 /* An update keeps that lattice while its factor takes at most so many times as much. */
 #define GXSP_NESTED_SLACK 2
@@ -1542,8 +1549,8 @@ typedef struct gxsp_component {
     uint32_t state;     /* GXSP_HELD ... GXSP_TOUCHES. 0: loose, so that a translation of it meets no stiffness */
 } gxsp_component;
 
-/* A copy, or a hidden vector of one, that follows others. The first four masters are the constraint's, or hidden vectors
- * of these; behind them, where an affine copy follows affine ones, the hidden vectors of these. */
+/* A copy, or a hidden vector of one, that follows others. The first four masters are the constraint's, or hidden
+ * vectors of these; behind them, where an affine copy follows affine ones, the hidden vectors of these. */
 typedef struct gxsp_follower {
     uint32_t copy, count, master[16];
     double weight[16];
@@ -5975,11 +5982,9 @@ static void gxsp_affine_evaluate(gxsp_system *system, gxsp_pass *pass) {
                 gxsp_lead_of(system, affine->blocks[b].vector[0][l])->energies[k] += affine->blocks[b].energies[k][l];
 }
 
-/* A function of an element, given by its share of each vector, at a point: gradient in the frame of V, and value */
-static void gxsp_point_function(const gxsp_affine_block *block, int point, int l, const double share[16],
-                                double gradient[3], double *value) {
-    const gxsp_tangent *tangent = &block->tangent[point];
-    double w[4];
+/* A function of an element is given by its share of each vector. At a point its gradient is that of a linear function
+ * with the values w at the corners. */
+static void gxsp_point_corners(const gxsp_affine_block *block, int point, int l, const double share[16], double w[4]) {
     int k, j, a;
     for (j = 0; j < 4; j++) w[j] = share[j];
     for (k = 0; k < 6; k++) {
@@ -5990,10 +5995,35 @@ static void gxsp_point_function(const gxsp_affine_block *block, int point, int l
         w[j] += 4 * block->shape[point][i][l] * e;
         w[i] += 4 * block->shape[point][j][l] * e;
     }
+}
+
+/* A function of an element at a point: gradient in the frame of V, and value */
+static void gxsp_point_function(const gxsp_affine_block *block, int point, int l, const double share[16],
+                                double gradient[3], double *value) {
+    const gxsp_tangent *tangent = &block->tangent[point];
+    double w[4];
+    int j, a;
+    gxsp_point_corners(block, point, l, share, w);
     for (j = 0, *value = 0; j < 4; j++) *value += 0.5 * block->shape[point][j][l] * (share[j] + w[j]);
     for (a = 0; a < 3; a++) {
         gradient[a] = 0;
         for (j = 1; j < 4; j++) gradient[a] += (w[j] - w[0]) * (double)tangent->gradient[3 * (j - 1) + a][l];
+    }
+}
+
+/* The same function: slack[i] is its part of A_i less its gradient at the point, 1/m, where corner i is affine, else 0.
+ * length: see gxsp_affine */
+static void gxsp_point_slack(const gxsp_affine_block *block, double length, int point, int l, const double share[16],
+                             float slack[4][3]) {
+    double w[4];
+    int i, j, a;
+    gxsp_point_corners(block, point, l, share, w);
+    for (a = 0; a < 3; a++) {
+        double gradient = 0; /* in the material's frame */
+        for (j = 1; j < 4; j++) gradient += (w[j] - w[0]) * block->gradient[3 * (j - 1) + a][l];
+        for (i = 0; i < 4; i++)
+            slack[i][a] =
+                block->vector[4 + 3 * i][l] == GXSP_NONE ? 0 : (float)(share[4 + 3 * i + a] / length - gradient);
     }
 }
 
@@ -6044,6 +6074,19 @@ static void gxsp_point_couple(const double gradient[3], const double flux[27], d
         const double *p = flux + 9 * (k % 3) + 3 * (k / 3);
         to[k] += gradient[0] * p[0] + gradient[1] * p[1] + gradient[2] * p[2];
     }
+}
+
+/* Mean stiffness at a point, weight x N/m2: a ninth of the trace of the tangent */
+static double gxsp_point_modulus(const gxsp_affine_block *block, int point, int l) {
+    double sum[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0}, flux[27];
+    int a;
+    for (a = 0; a < 3; a++) {
+        double gradient[3] = {0, 0, 0};
+        gradient[a] = 1;
+        gxsp_point_flux(block, point, l, gradient, flux);
+        gxsp_point_couple(gradient, flux, sum);
+    }
+    return (sum[0] + sum[4] + sum[8]) / 9;
 }
 
 /* Diagonal blocks of one element's corner: of its copy, or of all parts of its group */
@@ -6136,7 +6179,9 @@ static void gxsp_affine_invert(const gxsp_system *system, uint32_t group) {
         }
     for (i = 0; i < 12; i++)
         scale[i] = !system->state.still[affine->member[group][i / 3]] &&
-                           !gxsp_follows(system, affine->member[group][i / 3]) && a[i][i] > GXSP_TINY ? 1 / sqrt(a[i][i]) : 0;
+                           !gxsp_follows(system, affine->member[group][i / 3]) && a[i][i] > GXSP_TINY
+                     ? 1 / sqrt(a[i][i])
+                     : 0;
     memset(w, 0, sizeof w);
     for (i = 0; i < 12; i++) { /* Cholesky of the block with a diagonal of 1 */
         for (j = 0; j <= i; j++) {
@@ -6172,10 +6217,9 @@ static void gxsp_affine_diagonal(gxsp_system *system, double rate) {
     for (group = 0; group < affine->group_count; group++) {
         for (p = 0; p < 4; p++)
             for (k = 0; k < 6; k++)
-                affine->own[affine->member[group][p]][k] =
-                    gxsp_follows(system, affine->member[group][p])
-                        ? 0
-                        : affine->full[group][gxsp_packed_mass[p][p]][packed[k]];
+                affine->own[affine->member[group][p]][k] = gxsp_follows(system, affine->member[group][p])
+                                                             ? 0
+                                                             : affine->full[group][gxsp_packed_mass[p][p]][packed[k]];
         gxsp_affine_invert(system, group);
     }
 }
@@ -8063,13 +8107,17 @@ static void gxsp_coarse_term(gxsp_system *system, const gxsp_term *term) {
 /* In: tangents of elements with affine copies, level 1's matrix from chunks. Out: the factor of their sum, in double
  * precision: bending is softer than the rounding and the shift of single precision. */
 
-/* Adds an element's Hessian between its coarse functions. rate: times scale; dirty: see gxsp_nested_pattern */
+/* Adds an element's Hessian between its coarse functions. Some fields have many descriptions by affine copies: what is
+ * between two of them moves nothing, and only rounding has a stiffness there. So each A_i is tied to the gradient
+ * around it by a spring of GXSP_TIE of the element's stiffness. Where a sheet bends, both differ by the bend over an
+ * element, so the matrix gets stiffer by about GXSP_TIE (h / thickness)^2. rate: times scale; dirty: see
+ * gxsp_nested_pattern */
 static void gxsp_nested_element(gxsp_system *system, const gxsp_affine_block *block, int l, double rate,
                                 const uint8_t *dirty) {
     const gxsp_level *level = &system->multigrid.levels[1];
     uint32_t node[64], parents[16], count = 0, c, d, k, n;
     double share[64][16], gradient[64][3], value[64], flux[27];
-    float weights[16];
+    float weights[16], slack[64][4][3];
     int p, m;
     for (k = 0; k < 16; k++) {
         n = block->vector[k][l] == GXSP_NONE ? 0 : gxsp_nested_parents(system, block->vector[k][l], parents, weights);
@@ -8083,17 +8131,20 @@ static void gxsp_nested_element(gxsp_system *system, const gxsp_affine_block *bl
         }
     }
     for (p = 0; p < 4; p++) {
+        const double tie = 0.25 * GXSP_TIE * gxsp_point_modulus(block, p, l);
         for (c = 0; c < count; c++) gxsp_point_function(block, p, l, share[c], gradient[c], &value[c]);
+        for (c = 0; c < count; c++) gxsp_point_slack(block, system->affine.length, p, l, share[c], slack[c]);
         for (d = 0; d < count; d++) {
             gxsp_point_flux(block, p, l, gradient[d], flux);
             for (c = 0; c < count; c++) {
-                double to[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0}, *entry;
+                double to[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0}, *entry,
+                       tied = rate * block->rest.mass[l] * value[c] * value[d];
                 if (node[c] > node[d] || (dirty && !dirty[node[c]] && !dirty[node[d]])) continue;
                 entry = system->affine.block + 9 * (size_t)gxsp_find_entry(level, node[c], node[d]);
+                for (m = 0; m < 12; m++)
+                    tied += tie * ((double)slack[c][m / 3][m % 3] * (double)slack[d][m / 3][m % 3]);
                 gxsp_point_couple(gradient[c], flux, to);
-                to[0] += rate * block->rest.mass[l] * value[c] * value[d];
-                to[4] += rate * block->rest.mass[l] * value[c] * value[d];
-                to[8] += rate * block->rest.mass[l] * value[c] * value[d];
+                to[0] += tied, to[4] += tied, to[8] += tied;
                 for (m = 0; m < 9; m++) entry[3 * (m % 3) + m / 3] += to[m];
             }
         }
@@ -8146,10 +8197,8 @@ static double gxsp_double_dot(const double *a, const double *b, size_t count) {
     return (sum[0] + sum[2]) + (sum[1] + sum[3]);
 }
 
-/* The sum of both matrices in the factor's envelope, then Cholesky; the diagonal is inverted. Functions that others
- * make up have pivots of rounding. 2e-8 of the diagonal is added, which hardly stiffens what bends. With 1e-12 an
- * answer had multiples of them, and the rounding of their products became a force: sheets that nothing holds took
- * hundreds of iterations in place of six, under pairs even with 4e-9. place: n, scratch. 0: a number overflowed. */
+/* The sum of both matrices in the factor's envelope, then Cholesky; the diagonal, with 1e-12 more, is inverted. place:
+ * n, scratch. 0: a number overflowed. */
 static int gxsp_nested_factor(gxsp_system *system, uint32_t *place) {
     const gxsp_factor *factor = &system->multigrid.factor;
     const gxsp_level *level = &system->multigrid.levels[1];
@@ -8173,7 +8222,7 @@ static int gxsp_nested_factor(gxsp_system *system, uint32_t *place) {
             const double *left = gxsp_nested_row(system, j);
             row[j] = (row[j] - gxsp_double_dot(row + from, left + from, j - from)) * left[j];
         }
-        row[i] = own * (1 + 2e-8) - gxsp_double_dot(row + first, row + first, i - first);
+        row[i] = own * (1 + 1e-12) - gxsp_double_dot(row + first, row + first, i - first);
         row[i] = own < GXSP_TINY ? 0 : row[i] > 1e-10 * own ? 1 / sqrt(row[i]) : 0;
         if (!gxsp_finite(row[i])) return 0;
     }
@@ -11140,6 +11189,74 @@ static void gxsp_lead_lights(const gxsp_problem *problem) {
     }
 }
 
+/* An element's mean gradient of the way from one displacement to another, m/m: of[c][a] */
+static void gxsp_affine_gradient(const gxsp_affine_block *block, int l, const double *from, const double *to,
+                                 double of[3][3]) {
+    double w[4][3], mean[4], way[2];
+    int i, j, k, a, c;
+    for (i = 0; i < 4; i++) {
+        mean[i] = block->shape[0][i][l] + block->shape[1][i][l] + block->shape[2][i][l] + block->shape[3][i][l];
+        for (c = 0; c < 3; c++) {
+            const size_t at = 3 * (size_t)block->vector[i][l] + (size_t)c;
+            w[i][c] = to[at] - from[at];
+        }
+    }
+    for (k = 0; k < 6; k++)
+        for (a = 0; a < 3; a++)
+            for (c = 0; c < 3; c++) {
+                double e;
+                for (i = 0; i < 2; i++) {
+                    const uint32_t vector = block->vector[4 + 3 * gxsp_edge_ends[k][i] + a][l];
+                    const size_t at = 3 * (size_t)vector + (size_t)c;
+                    way[i] = vector == GXSP_NONE ? 0 : to[at] - from[at];
+                }
+                e = (way[0] - way[1]) * gxsp_affine_edge(block, k, a, l);
+                w[gxsp_edge_ends[k][1]][c] += mean[gxsp_edge_ends[k][0]] * e;
+                w[gxsp_edge_ends[k][0]][c] += mean[gxsp_edge_ends[k][1]] * e;
+            }
+    for (c = 0; c < 3; c++)
+        for (a = 0; a < 3; a++)
+            for (of[c][a] = 0, j = 1; j < 4; j++) of[c][a] += (w[j][c] - w[0][c]) * block->gradient[3 * (j - 1) + a][l];
+}
+
+/* Some fields have many descriptions by affine copies: a difference of two moves nothing, has no force and no inertia,
+ * and would go on for ever. So the way from the step's start of each A goes a part nearer to the gradient of the
+ * field's way around its copy. What moves nothing has no gradient, and loses that part in every step; in what turns or
+ * stretches evenly both are equal; what bends differs a little in the start only. */
+static void gxsp_calm_affine(const gxsp_problem *problem) {
+    gxsp_system *system = problem->system;
+    const gxsp_affine *affine = &system->affine;
+    const double *given = problem->given;
+    double *start = system->vectors.current;
+    uint32_t b, g;
+    int l, k, a, c;
+    if (affine->count == 0) return;
+    memset(affine->sum, 0, system->model.n * sizeof *affine->sum);
+    for (b = 0; b < affine->block_count; b++)
+        for (l = 0; l < GXSP_LANES && !affine->blocks[b].still; l++) {
+            const gxsp_affine_block *block = &affine->blocks[b];
+            const double weight = block->rest.weight[l];
+            double gradient[3][3];
+            if (!(weight > 0)) continue;
+            gxsp_affine_gradient(block, l, given, start, gradient);
+            for (k = 0; k < 4; k++) {
+                if (block->vector[4 + 3 * k][l] == GXSP_NONE) continue;
+                affine->sum[block->vector[k][l]][0] += weight;
+                for (a = 0; a < 3; a++)
+                    for (c = 0; c < 3; c++) affine->sum[block->vector[4 + 3 * k + a][l]][c] += weight * gradient[c][a];
+            }
+        }
+    for (g = 0; g < affine->group_count; g++) {
+        const double weight = affine->sum[affine->member[g][0]][0];
+        for (a = 1; a < 4 && weight > 0 && !system->state.still[affine->member[g][0]]; a++)
+            for (c = 0; c < 3; c++) {
+                const uint32_t vector = affine->member[g][a];
+                const size_t at = 3 * (size_t)vector + (size_t)c;
+                start[at] -= GXSP_CALM * (start[at] - given[at] - affine->length / weight * affine->sum[vector][c]);
+            }
+    }
+}
+
 /* Starts Newton's method at base, or where inertia leads; each loose component is translated so that its momentum
  * balances. The iteration cannot change momentum: elastic forces have none, and directions balance it. */
 static int gxsp_start(gxsp_problem *problem, int led) {
@@ -11149,6 +11266,7 @@ static int gxsp_start(gxsp_problem *problem, int led) {
     for (i = 0; i < system->model.n && led; i++)
         if (!system->state.still[i])
             memcpy(system->vectors.current + 3 * i, system->vectors.target + 3 * i, 3 * sizeof(double));
+    if (led) gxsp_calm_affine(problem);
     if (led) gxsp_lead_lights(problem);
     gxsp_follow(system, problem->given, system->vectors.current);
     gxsp_untouch_components(system);
