@@ -13938,6 +13938,8 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_SETTLED
 #undef GXSP_SHEETS_MOST
 #undef GXSP_WIDEST
+#undef GXSP_TIE
+#undef GXSP_CALM
 #undef GXSP_SHIFT
 #undef GXSP_STIFFNESS
 #undef GXSP_TINY
