@@ -541,7 +541,8 @@ static gxb_operand box_of(double x[8][3], const double low[3], const double high
 }
 
 /* A tool is dragged through a block, in steps of a 32nd of its length: each time it is taken out and added again. What
-   it leaves has one volume in all places. The Boolean does not grow with the places where the tool was. */
+   it leaves has one volume in all places. A sheet beside it stays, too. The Boolean does not grow with the places where
+   the tool was. */
 START_TEST(a_dragged_tool_leaves_nothing_behind) {
     static const double low[3] = {0, 0, 0}, high[3] = {4, 1, 1};
     static const double tool_low[3] = {0.25, 0.25, 0.5}, tool_high[3] = {0.75, 0.75, 1.5};
@@ -555,12 +556,17 @@ START_TEST(a_dragged_tool_leaves_nothing_behind) {
     b = start(&c, _i / 2, NULL);
     o.operation = GXB_UNION;
     ck_assert_int_eq(gxb_boolean_add(b, &o, NULL), GX_OK);
+    o.operation = GXB_SPLIT;
+    o.vertex_count = 3;
+    o.triangle_count = 1;
+    for (place = 0; place < 3; place++) block[place][1] += 2;
+    ck_assert_int_eq(gxb_boolean_add(b, &o, NULL), GX_OK);
     for (place = 0; place < 180 / FEWER; place++) {
         gxb_boolean_result r;
         gxb_components parts;
         o = box_of(x, tool_low, tool_high, _i % 2 == 0 ? 0 : 0.01, place / 64.0);
         o.operation = GXB_DIFFERENCE;
-        if (place > 0) ck_assert_int_eq(gxb_boolean_remove(b, place, NULL), GX_OK);
+        if (place > 0) ck_assert_int_eq(gxb_boolean_remove(b, place + 1, NULL), GX_OK);
         ck_assert_int_eq(gxb_boolean_add(b, &o, NULL), GX_OK);
         ck_assert_int_eq(gxb_boolean_evaluate(b, &r, NULL), GX_OK);
         ck_assert_int_eq(gxb_boolean_components(b, &parts, NULL), GX_OK);
