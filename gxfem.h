@@ -4678,7 +4678,7 @@ static gx_result gxp_divide_cell(gxp_cut *cut, uint32_t cell) {
         }
         if (result == GX_OK) result = gxp_give_leaves(body, slot);
         given = gxp_given_material(body, leaf);
-        body->cells.data[slot].material = (given == GXP_NONE ? material : given) & INT32_MAX;
+        if (result == GX_OK) body->cells.data[slot].material = (given == GXP_NONE ? material : given) & INT32_MAX;
         if (result == GX_OK) result = gxp_push(body, &scratch->new_cells, slot);
     }
     if (result == GX_OK && parts == 0) {
