@@ -359,10 +359,10 @@ formatted:
 	@echo $(formatted)
 
 flags:
-	@JOBS=$(JOBS) sh tests/flags.sh
+	@JOBS=$(JOBS) FEWER=$(FEWER) sh tests/flags.sh
 
 hashes:
-	@JOBS=$(JOBS) sh tests/hashes.sh $(BUILD)/hashes
+	@JOBS=$(JOBS) FEWER=$(FEWER) sh tests/hashes.sh $(BUILD)/hashes
 
 # What of it cannot be installed is left out.
 platforms:

@@ -581,7 +581,7 @@ typedef gxs_step_report gx_step_report;
    compared with its fullest part. It moves as a point if that part is smaller than support_below of its element.
    Where support_below is 0, it moves as a point if that part is smaller than 1e-9 or if no part reaches a tenth as far
    as its element.
-   Affine copies neither follow nor lead, but those of a fragment that moves as a point do. A point with affine copies
+   An affine copy that follows takes its A from that field too. A point with affine copies
    is moved as the material at its position at rest is. forces act on displacements alone, anchor_forces on A too;
    targets leave A as it is, poses turn it. Thin sheets that are flung turn far in a step, and one Newton iteration lags
    by half of the motion: newton_iterations 0 then takes two to forty, until the motion is within 5 %. Pairs without
@@ -4678,7 +4678,7 @@ static gx_result gxp_divide_cell(gxp_cut *cut, uint32_t cell) {
         }
         if (result == GX_OK) result = gxp_give_leaves(body, slot);
         given = gxp_given_material(body, leaf);
-        body->cells.data[slot].material = (given == GXP_NONE ? material : given) & INT32_MAX;
+        if (result == GX_OK) body->cells.data[slot].material = (given == GXP_NONE ? material : given) & INT32_MAX;
         if (result == GX_OK) result = gxp_push(body, &scratch->new_cells, slot);
     }
     if (result == GX_OK && parts == 0) {
@@ -8959,25 +8959,17 @@ static uint32_t gxp_find_supports(const gx_body *body, gxp_supports *supports) {
     return count;
 }
 
-/* Copies of a speck move as a point, so in the model none of them is affine. Other affine copies neither follow nor
-   lead: sheets are to bend, and a sliver of one is carried by the cells beside it. Returns 1 if the copy follows. */
-static int gxp_may_follow(gx_body *body, const gxp_supports *supports, uint32_t copy) {
+/* Copies of a speck move as a point, so in the model none of them is affine. */
+static void gxp_make_plain(gx_body *body, const gxp_supports *supports, uint32_t copy) {
     const uint32_t *master = body->cells.data[supports->cell[copy]].copies;
-    uint8_t *affine = body->copies.affine, *plain = body->hidden.plain;
     int k;
-    if (!body->copies.bends) return 1;
-    if (supports->weak[copy] == GXP_FOLLOWS_POINT) {
-        for (k = 0; k < 4; k++) plain[master[k]] = 1;
-        plain[copy] = 1;
-        return 1;
-    }
-    return !(affine[copy] | affine[master[0]] | affine[master[1]] | affine[master[2]] | affine[master[3]]);
+    for (k = 0; k < 4; k++) body->hidden.plain[master[k]] = 1;
+    body->hidden.plain[copy] = 1;
 }
 
 static void gxp_add_constraint(gx_body *body, const gxp_supports *supports, uint32_t copy) {
-    gxs_constraint *constraint = &body->model.constraints[body->model.constraint_count];
-    if (!gxp_may_follow(body, supports, copy)) return;
-    body->model.constraint_count++;
+    gxs_constraint *constraint = &body->model.constraints[body->model.constraint_count++];
+    if (body->copies.bends && supports->weak[copy] == GXP_FOLLOWS_POINT) gxp_make_plain(body, supports, copy);
     constraint->copy = copy;
     memcpy(constraint->master, body->cells.data[supports->cell[copy]].copies, sizeof constraint->master);
     memset(constraint->weight, 0, sizeof constraint->weight);
