@@ -2798,17 +2798,14 @@ static uint32_t gxp_search_elements(const gx_body *body, const double *const p[3
 
 /* Finds the elements that the triangle may meet. */
 static gx_result gxp_find_elements(gx_body *body, const double *const p[3], gxp_words *found) {
-    gx_result result = GX_OK;
     uint32_t count;
-    for (;;) {
-        found->count = 0;
-        count = gxp_search_elements(body, p, found->data, found->capacity);
-        if (count != GXP_NONE || result != GX_OK) break;
-        result = gxp_words_room(body, found, (size_t)found->capacity + 64);
+    found->count = 0;
+    while ((count = gxp_search_elements(body, p, found->data, found->capacity)) == GXP_NONE) {
+        const gx_result result = gxp_words_room(body, found, (size_t)found->capacity + 64);
         if (result != GX_OK) return result;
     }
     found->count = count;
-    return result;
+    return GX_OK;
 }
 
 /* >>copies: tables of copies, cells and leaves --------------------------------------------------------------------- */
