@@ -483,13 +483,14 @@ START_TEST(cut_on_colliders) {
                                 collider_of(2, GX_COLLIDER_SPHERE, 0.3, 0, 0, 2.6, 0.4, -0.3),
                                 collider_of(3, GX_COLLIDER_SPHERE, 0.3, 0, 0, 0.4, 2.6, -0.3),
                                 collider_of(4, GX_COLLIDER_SPHERE, 0.3, 0, 0, 2.6, 2.6, -0.3),
-                                collider_of(5, GX_COLLIDER_SPHERE, 0.3, 0, 0, 0.4, 0.4, -0.3)}; /* again */
+                                collider_of(5, GX_COLLIDER_PLANE, 0, 0, 0, 0, 0, 0)};
     gx_collider_load loads[6];
     gx_step_desc step = falling(1.0 / 60);
     const size_t count = _i == 0 ? 5 : 6; /* two press on the same places */
     double before = 0, after = 0;
     size_t i;
     int frame;
+    if (_i == 1) colliders[0].pose[11] = 0;
     for (i = 0; i < count; i++) colliders[i].friction = 0.5;
     switch_on(body);
     step.newton_iterations = 3;
@@ -508,11 +509,11 @@ START_TEST(cut_on_colliders) {
     for (i = 0; i < count; i++) after += loads[i].force[2];
     if (getenv("GXFEM_VERBOSE")) printf("cut on colliders: %g to %g N\n", before, after);
     ck_assert_double_lt(before, -0.99 * 27000 * 9.81);
-    ck_assert_double_lt(fabs(after - before), (_i == 0 ? 0.02 : 0.04) * fabs(before));
+    ck_assert_double_lt(fabs(after - before), (_i == 0 ? 0.02 : 0.06) * fabs(before));
     if (_i == 1) {
         ck_assert_double_lt(loads[5].force[2], -1000);
         for (i = 0; i < 3; i++) /* with all that they had carried */
-            ck_assert_double_lt(fabs(loads[1].force[i] - loads[5].force[i]), 1e-6 * fabs(loads[5].force[2]));
+            ck_assert_double_lt(fabs(loads[0].force[i] - loads[5].force[i]), 1e-6 * fabs(loads[5].force[2]));
     }
     gx_body_destroy(body);
     wl_free(&w);
