@@ -80,6 +80,7 @@ help:
 	@echo "  violent        starts at which Newton's method is known to fail: inverted, flattened, collapsed bodies"
 	@echo "  accuracy       static solutions beside closed forms and published values"
 	@echo "  drift          what integrators conserve: energy, momenta; their order"
+	@echo "  contact        pieces that press on each other: against closed forms; what a step with contact costs"
 	@echo "  soak           100,000 steps of bodies that are cut, kicked and dropped: does a copy run away?"
 	@echo "  frames         frames with a cut beside frames without one"
 	@echo "  skin           the visual surface: moved in each frame, updated after a cut"
@@ -358,10 +359,10 @@ formatted:
 	@echo $(formatted)
 
 flags:
-	@JOBS=$(JOBS) sh tests/flags.sh
+	@JOBS=$(JOBS) FEWER=$(FEWER) sh tests/flags.sh
 
 hashes:
-	@JOBS=$(JOBS) sh tests/hashes.sh $(BUILD)/hashes
+	@JOBS=$(JOBS) FEWER=$(FEWER) sh tests/hashes.sh $(BUILD)/hashes
 
 # What of it cannot be installed is left out.
 platforms:
@@ -374,7 +375,7 @@ check-wasm:
 
 # ---- benches. Only their CSV goes to stdout. BENCH=--small: smaller ones, with a folder of their own for tables and charts
 
-benches = quadrature stepping front space thin table2 conditioning failure scaling kernel open smallest solver violent accuracy drift frames skin blade strokes soak
+benches = quadrature stepping front space thin table2 conditioning failure scaling kernel open smallest solver violent accuracy drift frames skin blade strokes contact soak
 small = $(filter --small,$(BENCH))
 tables = $(BUILD)/bench$(if $(small),/small)
 # The compiler's own default: with -std=c99 gcc fuses no multiplications with additions, whatever -march says.
@@ -447,8 +448,8 @@ $(sort $(table2:%=$(traces)/%.trace) $(stepping:%=$(traces)/%.trace)): $(traces)
 	@mkdir -p $(@D)
 	@$< --quiet --trace $@ $(or $(small),$(frames-$*:%=--frames %)) $(if $(OCTOPUS),$(if $(filter octopus,$*),--mesh $(OCTOPUS)))
 
-# The soak takes longer than all others, and has no chart.
-charted = $(filter-out soak,$(benches))
+# The soak takes longer than all others. It has no chart, nor has contact.
+charted = $(filter-out soak contact,$(benches))
 bench:
 	@rm -f $(charted:%=$(tables)/%.csv)
 	@$(MAKE) --no-print-directory charts

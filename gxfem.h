@@ -59,7 +59,8 @@
  *     what acts on it:           >>attached >>supports >>model
  *     the skin:                  >>corners >>vertices >>faces >>skinning
  *     points and rays:           >>tree >>locate >>nearest >>hits >>rays
- *     a step, with contact:      >>touch >>colliders >>meeting >>pressing >>telling >>step
+ *     a step, with contact:      >>touch >>colliders >>meeting >>seeking >>pressing >>telling
+ *                                >>step
  *     a blade in space:          >>layers >>edges >>relations >>fronts >>glances >>strokes >>ways >>blade
  *                                >>contacts >>carve
  *     beginning, end, bytes:     >>grid >>create >>hashes >>stream >>scabbard >>save
@@ -259,7 +260,7 @@ typedef struct gx_body_desc {
     gx_allocator allocator;      /* zero: malloc, free, realloc */
     double (*clock)(void *user); /* seconds, for the reports' timings and the steps' budgets; NULL: timings are 0 */
     void *clock_user;
-    gx_jobs jobs; /* the host's threads, for the steps; zero: none */
+    gx_jobs jobs; /* the host's threads, for steps and large cuts; zero: none */
     /* NULL: the mesh above. Else positions, elements, element_materials and texture are NULL, their counts 0, and the
        body is as a cut has left it: gx_view.epoch is not 0, and surface n of the shape is surface n of the body's cuts,
        for the skin and its texture. */
@@ -580,7 +581,7 @@ typedef gxs_step_report gx_step_report;
    compared with its fullest part. It moves as a point if that part is smaller than support_below of its element.
    Where support_below is 0, it moves as a point if that part is smaller than 1e-9 or if no part reaches a tenth as far
    as its element.
-   Affine copies neither follow nor lead, but those of a fragment that moves as a point do. A point with affine copies
+   An affine copy that follows takes its A from that field too. A point with affine copies
    is moved as the material at its position at rest is. forces act on displacements alone, anchor_forces on A too;
    targets leave A as it is, poses turn it. Thin sheets that are flung turn far in a step, and one Newton iteration lags
    by half of the motion: newton_iterations 0 then takes two to forty, until the motion is within 5 %. Pairs without
@@ -1571,6 +1572,7 @@ typedef struct gxp_touch_surface { /* facets by fragment, then as they lie in sp
     uint32_t state_count, state_capacity;
     double largest;    /* m: size of the vertices' elements */
     gxp_words guesses; /* of each vertex: the facet that it met when it was sought last, or GXP_NONE */
+    gxp_words samples; /* vertices that are, in order of the facets that they are of: near each other, facing alike */
 } gxp_touch_surface;
 
 typedef struct gxp_touch_pair {  /* of a step */
@@ -1591,6 +1593,12 @@ typedef struct gxp_touch_box { /* over facets */
     gxp_bounds from, to;       /* at the step's start, and at its end if nothing changes their velocities */
     gxp_bounds normals;        /* at the start */
 } gxp_touch_box;
+
+typedef struct gxp_touch_crowd { /* samples that are sought together */
+    gxp_touch_box own;
+    double slack, ahead, beside; /* m: how far what they meet may be at most: behind it, in front of it, beside it */
+    double size;                 /* m: of their elements, the largest */
+} gxp_touch_crowd;
 
 typedef struct gxp_touch_beside { /* a sample that may come near a collider */
     uint32_t collider, parts;     /* parts above 1: it is a facet, whose edges are divided */
@@ -1642,13 +1650,16 @@ typedef struct gxp_touch {
     gxp_keys edges;          /* of a surface's facets: two vertices, both ways */
     gxp_words roles;         /* of a surface's vertices: GXP_TOUCH_INSIDE ... */
     gxp_words ranked;        /* facets along a curve */
+    gxp_words kept_leaves;   /* of these, those in reach of a sample */
+    double *passed;          /* near.count x 6: boxes of those leaves */
+    gxp_words crowd, near;   /* boxes that may hold what many samples meet; leaves that do what some of them meet */
     uint32_t leaf_count;     /* a power of two */
     uint32_t given;          /* pairs of the caller, which stand first */
     gxp_touch_event *events; /* of a call */
     uint32_t event_capacity;
     uint32_t found, kept; /* pairs of contact: of this step; of the last one that succeeded */
-    uint32_t pair_capacity, moved_capacity, facing_capacity, box_capacity, weight_capacity, slip_capacity,
-        force_capacity;
+    uint32_t passed_capacity, pair_capacity, moved_capacity, facing_capacity, box_capacity, weight_capacity,
+        slip_capacity, force_capacity;
 } gxp_touch;
 #define GXP_TOUCH_COPIES 16u /* copies of a pair at most: those of a vertex and of a facet's corners */
 
@@ -1669,6 +1680,7 @@ typedef struct gxp_boundary {
 typedef struct gxp_scratch {
     uint32_t stamp;       /* of the last walk through cells or leaves */
     uint32_t scope_stamp; /* of the cells that a surface of the cut may touch */
+    uint32_t first_point; /* that the cut has made */
     /* a cut, from step to step */
     gxp_words removed;    /* leaves that solids remove */
     gxp_keys removed_of;  /* element, leaf of it that solids remove */
@@ -1682,6 +1694,7 @@ typedef struct gxp_scratch {
     /* >>arrange */
     gxp_keys order;          /* place in the order of insertion, triangle */
     gxp_words near_elements; /* that a triangle may meet */
+    gxp_words batch;         /* the same of many triangles, see gxp_batch */
     /* >>pinches */
     gxp_words joint_leaves; /* around a node, or of an element */
     gxp_words joint_edges;  /* parts of edges in which these meet: joints 0, 1, ...; then a node is one */
@@ -1959,9 +1972,12 @@ static const gxp_column gxp_lists[] = {
     GXP_LIST(touch.surfaces[0].states, touch.surfaces[0].state_capacity, sizeof(gxp_touch_state)),
     GXP_LIST(touch.surfaces[1].states, touch.surfaces[1].state_capacity, sizeof(gxp_touch_state)),
     GXP_WORDS(touch.surfaces[0].guesses), GXP_WORDS(touch.surfaces[1].guesses),
+    GXP_WORDS(touch.surfaces[0].samples), GXP_WORDS(touch.surfaces[1].samples),
+    GXP_WORDS(touch.crowd),               GXP_WORDS(touch.near), GXP_WORDS(touch.kept_leaves),
     GXP_LIST(touch.known, touch.known_capacity, sizeof(gxp_touch_known)),
     GXP_LIST(touch.pairs, touch.pair_capacity, sizeof(gxp_touch_pair)),
     GXP_LIST(touch.moved, touch.moved_capacity, 9 * sizeof(double)),
+    GXP_LIST(touch.passed, touch.passed_capacity, sizeof(double)),
     GXP_LIST(touch.facing, touch.facing_capacity, 3 * sizeof(double)),
     GXP_LIST(touch.events, touch.event_capacity, sizeof(gxp_touch_event)), GXP_WORDS(touch.touching),
     GXP_LIST(touch.boxes, touch.box_capacity, sizeof(gxp_touch_box)), GXP_WORDS(touch.sides),
@@ -1975,7 +1991,7 @@ static const gxp_column gxp_lists[] = {
     GXP_WORDS(scratch.new_cells),
     GXP_KEYS(scratch.links), GXP_KEYS(scratch.glue), GXP_KEYS(scratch.seams), GXP_WORDS(scratch.cluster),
     GXP_WORDS(scratch.link_first), GXP_WORDS(scratch.narrow), GXP_WORDS(scratch.dead),
-    GXP_KEYS(scratch.order), GXP_WORDS(scratch.near_elements),
+    GXP_KEYS(scratch.order), GXP_WORDS(scratch.near_elements), GXP_WORDS(scratch.batch),
     GXP_WORDS(scratch.joint_leaves), GXP_WORDS(scratch.joint_edges), GXP_WORDS(scratch.joint_walls),
     GXP_WORDS(scratch.leaf_joints), GXP_KEYS(scratch.joint_cells), GXP_KEYS(scratch.cell_joints),
     GXP_WORDS(scratch.seed_leaves), GXP_WORDS(scratch.flooded), GXP_WORDS(scratch.seeded), GXP_WORDS(scratch.wound),
@@ -2748,35 +2764,48 @@ static int gxp_triangle_near_element(const gx_body *body, const gxp_search *s, u
     return gxp_triangle_near_tet(s, x);
 }
 
-/* Finds the elements that the triangle may meet. Elements in boxes that it may meet are listed first, so that their
-   data can be prefetched before each is examined. */
-static gx_result gxp_find_elements(gx_body *body, const double *const p[3], gxp_words *found) {
+/* Lists the elements that the triangle may meet, at most room, and returns their number; GXP_NONE: room is too small.
+   Elements in boxes that it may meet are listed first, so that their data can be prefetched before each is examined.
+   Changes nothing else, so threads may do it side by side. */
+static uint32_t gxp_search_elements(const gx_body *body, const double *const p[3], uint32_t *found, uint32_t room) {
     const uint32_t *elements = gxb_complex_element_nodes(body->complex, 0);
     gxp_search search;
-    uint32_t stack[128], depth = 0, count = 0, i, k;
-    gx_result result = GX_OK;
-    found->count = 0;
+    uint32_t stack[128], depth = 0, listed = 0, count = 0, i, k;
     gxp_search_init(&search, p, ldexp(1, gxb_complex_shift(body->complex)), &body->mesh.boxes[0]);
     stack[depth++] = 0;
-    while (depth > 0 && result == GX_OK) {
+    while (depth > 0) {
         const gxp_box *box = &body->mesh.boxes[stack[--depth]];
         if (!gxp_triangle_near_box(&search, box)) continue;
         if (box->count == 0) {
             stack[depth++] = box->first + 1;
             stack[depth++] = box->first;
-        } else
-            result = gxp_words_room(body, found, box->count);
-        for (i = 0; i < box->count && result == GX_OK; i++) {
-            const uint32_t element = found->data[found->count++] = body->mesh.box_elements[box->first + i];
+        } else if (box->count > room - listed)
+            return GXP_NONE;
+        for (i = 0; i < box->count; i++) {
+            const uint32_t element = found[listed++] = body->mesh.box_elements[box->first + i];
             GXP_PREFETCH(elements + 4 * (size_t)element);
         }
     }
-    for (i = 0; i < found->count && result == GX_OK; i++) {
-        for (k = 0; k < 4 && i + 4 < found->count; k++)
-            GXP_PREFETCH(body->mesh.positions + 3 * (size_t)elements[4 * (size_t)found->data[i + 4] + k]);
-        if (!gxp_triangle_near_element(body, &search, found->data[i])) continue;
-        gxb_complex_prefetch_element(body->complex, found->data[i]);
-        found->data[count++] = found->data[i];
+    for (i = 0; i < listed; i++) {
+        for (k = 0; k < 4 && i + 4 < listed; k++)
+            GXP_PREFETCH(body->mesh.positions + 3 * (size_t)elements[4 * (size_t)found[i + 4] + k]);
+        if (!gxp_triangle_near_element(body, &search, found[i])) continue;
+        gxb_complex_prefetch_element(body->complex, found[i]);
+        found[count++] = found[i];
+    }
+    return count;
+}
+
+/* Finds the elements that the triangle may meet. */
+static gx_result gxp_find_elements(gx_body *body, const double *const p[3], gxp_words *found) {
+    gx_result result = GX_OK;
+    uint32_t count;
+    for (;;) {
+        found->count = 0;
+        count = gxp_search_elements(body, p, found->data, found->capacity);
+        if (count != GXP_NONE || result != GX_OK) break;
+        result = gxp_words_room(body, found, (size_t)found->capacity + 64);
+        if (result != GX_OK) return result;
     }
     found->count = count;
     return result;
@@ -3792,16 +3821,99 @@ static gx_result gxp_prepare_triangle(gxp_cut *cut, gxp_surface *s, uint32_t ind
     return gxb_complex_add_plane(body->complex, t);
 }
 
-/* Inserts the triangle into every element that it meets. */
+static void gxp_corners_of(const gx_surface *given, uint32_t index, const double *p[3]) {
+    uint32_t k;
+    for (k = 0; k < 3; k++) p[k] = given->vertices + 3 * (size_t)given->triangles[3 * (size_t)index + k];
+}
+
+/* --- searching on the host's threads: the triangles of a batch, by parts --- */
+
+#ifndef GXP_SEARCH_PART
+#define GXP_SEARCH_PART 64u /* triangles of a part: some ten microseconds; fewer in tests/test_threads_cuts.c */
+#endif
+#define GXP_SEARCH_PARTS 64u                     /* of a batch */
+#define GXP_SEARCH_ROOM  (16u * GXP_SEARCH_PART) /* elements that a part can list */
+
+typedef struct gxp_batch {
+    const gx_body *body;
+    const gx_surface *given;
+    const uint64_t *order; /* its triangles, see gxp_insert_surface */
+    uint32_t count;
+    uint32_t *found;  /* parts x GXP_SEARCH_ROOM: the elements of a part's triangles, one after the other */
+    uint32_t *counts; /* of each triangle; GXP_NONE: the part had no room left */
+} gxp_batch;
+
+static void gxp_search_part(void *context, size_t part) {
+    const gxp_batch *b = (const gxp_batch *)context;
+    uint32_t i = (uint32_t)part * GXP_SEARCH_PART, listed = 0;
+    const uint32_t end = b->count - i < GXP_SEARCH_PART ? b->count : i + GXP_SEARCH_PART;
+    for (; i < end; i++) {
+        const double *p[3];
+        gxp_corners_of(b->given, GXP_SECOND(b->order[i]), p);
+        b->counts[i] =
+            gxp_search_elements(b->body, p, b->found + part * GXP_SEARCH_ROOM + listed, GXP_SEARCH_ROOM - listed);
+        if (b->counts[i] != GXP_NONE) listed += b->counts[i];
+    }
+}
+
+/* Searches the elements of the triangles from first on in scratch.order, as many as a batch holds. *end: the first one
+   that it does not; it stays first if there are no threads, or few triangles. */
+static gx_result gxp_search_batch(gx_body *body, const gx_surface *given, uint32_t first, uint32_t *end) {
+    const gx_jobs *jobs = &body->config.jobs;
+    gxp_scratch *scratch = &body->scratch;
+    const uint32_t left = scratch->order.count - first, most = GXP_SEARCH_PARTS * GXP_SEARCH_PART;
+    gxp_batch batch;
+    gx_result result;
+    *end = first;
+    if (jobs->parallel_for == NULL || left < 4 * GXP_SEARCH_PART) return GX_OK;
+    scratch->batch.count = 0;
+    result = gxp_words_room(body, &scratch->batch, (size_t)GXP_SEARCH_PARTS * GXP_SEARCH_ROOM + most);
+    if (result != GX_OK) return result;
+    batch.body = body;
+    batch.given = given;
+    batch.order = scratch->order.data + first;
+    batch.count = left < most ? left : most;
+    batch.counts = scratch->batch.data;
+    batch.found = scratch->batch.data + most;
+    jobs->parallel_for(jobs->user, (batch.count + GXP_SEARCH_PART - 1) / GXP_SEARCH_PART, gxp_search_part, &batch);
+    *end = first + batch.count;
+    return GX_OK;
+}
+
+/* Lists in scratch.near_elements the elements of the triangle i of scratch.order. The batch of those from first to
+   before end has them, if i is one of these; *place: where they are. Elements of the next one are prefetched. */
+static gx_result gxp_take_near(gx_body *body, const gx_surface *given, uint32_t i, uint32_t first, uint32_t end,
+                               uint32_t *place) {
+    gxp_scratch *scratch = &body->scratch;
+    gxp_words *near = &scratch->near_elements;
+    const uint32_t n = i - first, *counts = scratch->batch.data;
+    const uint32_t *found = counts + GXP_SEARCH_PARTS * GXP_SEARCH_PART;
+    const double *p[3];
+    uint32_t k;
+    gx_result result;
+    if (n % GXP_SEARCH_PART == 0) *place = n / GXP_SEARCH_PART * GXP_SEARCH_ROOM;
+    if (i >= end || counts[n] == GXP_NONE) {
+        gxp_corners_of(given, GXP_SECOND(scratch->order.data[i]), p);
+        return gxp_find_elements(body, p, near);
+    }
+    near->count = 0;
+    result = gxp_words_room(body, near, counts[n]);
+    if (result != GX_OK || counts[n] == 0) return result;
+    memcpy(near->data, found + *place, counts[n] * sizeof *found);
+    near->count = counts[n];
+    *place += counts[n];
+    if (i + 1 < end && (n + 1) % GXP_SEARCH_PART != 0 && counts[n + 1] != GXP_NONE)
+        for (k = 0; k < counts[n + 1]; k++) gxb_complex_prefetch_element(body->complex, found[*place + k]);
+    return GX_OK;
+}
+
+/* Inserts the triangle into every element of scratch.near_elements that it meets. */
 static gx_result gxp_insert_triangle(gxp_cut *cut, gxp_surface *s, uint32_t index, int scoped) {
     gx_body *body = cut->body;
     gxp_scratch *scratch = &body->scratch;
-    const double *p[3];
-    uint32_t k, i;
-    gx_result result;
-    for (k = 0; k < 3; k++) p[k] = s->given->vertices + 3 * (size_t)s->given->triangles[3 * index + k];
-    result = gxp_find_elements(body, p, &scratch->near_elements);
-    if (result == GX_OK && scratch->near_elements.count > 0) result = gxp_prepare_triangle(cut, s, index);
+    uint32_t i;
+    gx_result result = GX_OK;
+    if (scratch->near_elements.count > 0) result = gxp_prepare_triangle(cut, s, index);
     for (i = 0; i < scratch->near_elements.count && result == GX_OK; i++) {
         const uint32_t element = scratch->near_elements.data[i];
         result = gxb_complex_insert(body->complex, &s->triangles[index], element, scoped ? gxp_in_scope : NULL, body);
@@ -3849,13 +3961,13 @@ static gx_result gxp_insert_surface(gxp_cut *cut, gxp_surface *s, int scoped) {
     const uint32_t count = (uint32_t)s->given->triangle_count;
     gx_body *body = cut->body;
     gxp_scratch *scratch = &body->scratch;
-    uint32_t i, before = 0;
+    uint32_t i, before = 0, first = 0, end = 0, place = 0;
     gx_result result;
     scratch->order.count = 0;
     result = gxp_keys_room(body, &scratch->order, 2 * (size_t)count); /* sorting takes as much again */
     for (i = 0; i < count && result == GX_OK; i++) {
         const uint64_t random = gxp_mix(scratch->order.count); /* triangles without area change no other's round */
-        uint32_t round = GXP_LAST_ROUND, place;
+        uint32_t round = GXP_LAST_ROUND;
         if (s->flat[i]) continue;
         while (round > 16 && !(random >> 3 * (GXP_LAST_ROUND - round) & 7)) round--;
         before += round < GXP_LAST_ROUND;
@@ -3868,7 +3980,12 @@ static gx_result gxp_insert_surface(gxp_cut *cut, gxp_surface *s, int scoped) {
             const uint32_t times = (scratch->order.count - before) / before;
             gxb_complex_reserve(body->complex, times < GXP_EXPECTED ? times : GXP_EXPECTED);
         }
-        result = gxp_insert_triangle(cut, s, GXP_SECOND(scratch->order.data[i]), scoped);
+        if (i >= end) {
+            first = i;
+            result = gxp_search_batch(body, s->given, first, &end);
+        }
+        if (result == GX_OK) result = gxp_take_near(body, s->given, i, first, end, &place);
+        if (result == GX_OK) result = gxp_insert_triangle(cut, s, GXP_SECOND(scratch->order.data[i]), scoped);
     }
     return result;
 }
@@ -6277,6 +6394,27 @@ GXP_PREFETCHES void gxp_prefetch_links(const gx_body *body, uint32_t index) {
         }
 }
 
+#ifndef GXP_PREPARE_PART
+#define GXP_PREPARE_PART 128u /* points of a part: some fifty microseconds; fewer in tests/test_threads_cuts.c */
+#endif
+
+static void gxp_prepare_part(void *context, size_t part) {
+    gx_body *body = (gx_body *)context;
+    const uint32_t count = gxb_complex_point_count(body->complex),
+                   first = body->scratch.first_point + (uint32_t)part * GXP_PREPARE_PART;
+    gxb_complex_prepare_points(body->complex, first,
+                               count - first < GXP_PREPARE_PART ? count : first + GXP_PREPARE_PART);
+}
+
+/* On the host's threads, finds where on mesh edges and faces the points lie that the cut has made: half of the work of
+   integrals. */
+static void gxp_prepare_points(gx_body *body) {
+    const gx_jobs *jobs = &body->config.jobs;
+    const uint32_t count = gxb_complex_point_count(body->complex) - body->scratch.first_point;
+    if (jobs->parallel_for != NULL && count >= 4 * GXP_PREPARE_PART)
+        jobs->parallel_for(jobs->user, (count + GXP_PREPARE_PART - 1) / GXP_PREPARE_PART, gxp_prepare_part, body);
+}
+
 /* Integrates the new cells. Unless links were weighed before to be severed, weighs them here, while their facets are in
    the cache. */
 static gx_result gxp_integrate(gxp_cut *cut) {
@@ -6285,7 +6423,9 @@ static gx_result gxp_integrate(gxp_cut *cut) {
     const int weighed = cut->desc->sever_below > 0;
     double bound = 1;
     uint32_t i, before = GXP_NONE;
-    gx_result result = gxp_integrate_removed(cut);
+    gx_result result;
+    gxp_prepare_points(body);
+    result = gxp_integrate_removed(cut);
     scratch->narrow.count = 0;
     scratch->stamp++;
     for (i = 0; i < scratch->new_cells.count && result == GX_OK; i++) {
@@ -6425,6 +6565,7 @@ static gx_result gxp_make_cut(gxp_cut *cut) {
     report->min_link_ratio = 1;
     gxp_begin(cut);
     first_facet = gxb_complex_facet_count(body->complex);
+    body->scratch.first_point = gxb_complex_point_count(body->complex);
     start = gxp_seconds(body);
     result = gxp_arrange(cut);
     report->seconds_arrangement = gxp_seconds(body) - start;
@@ -8945,25 +9086,17 @@ static uint32_t gxp_find_supports(const gx_body *body, gxp_supports *supports) {
     return count;
 }
 
-/* Copies of a speck move as a point, so in the model none of them is affine. Other affine copies neither follow nor
-   lead: sheets are to bend, and a sliver of one is carried by the cells beside it. Returns 1 if the copy follows. */
-static int gxp_may_follow(gx_body *body, const gxp_supports *supports, uint32_t copy) {
+/* Copies of a speck move as a point, so in the model none of them is affine. */
+static void gxp_make_plain(gx_body *body, const gxp_supports *supports, uint32_t copy) {
     const uint32_t *master = body->cells.data[supports->cell[copy]].copies;
-    uint8_t *affine = body->copies.affine, *plain = body->hidden.plain;
     int k;
-    if (!body->copies.bends) return 1;
-    if (supports->weak[copy] == GXP_FOLLOWS_POINT) {
-        for (k = 0; k < 4; k++) plain[master[k]] = 1;
-        plain[copy] = 1;
-        return 1;
-    }
-    return !(affine[copy] | affine[master[0]] | affine[master[1]] | affine[master[2]] | affine[master[3]]);
+    for (k = 0; k < 4; k++) body->hidden.plain[master[k]] = 1;
+    body->hidden.plain[copy] = 1;
 }
 
 static void gxp_add_constraint(gx_body *body, const gxp_supports *supports, uint32_t copy) {
-    gxs_constraint *constraint = &body->model.constraints[body->model.constraint_count];
-    if (!gxp_may_follow(body, supports, copy)) return;
-    body->model.constraint_count++;
+    gxs_constraint *constraint = &body->model.constraints[body->model.constraint_count++];
+    if (body->copies.bends && supports->weak[copy] == GXP_FOLLOWS_POINT) gxp_make_plain(body, supports, copy);
     constraint->copy = copy;
     memcpy(constraint->master, body->cells.data[supports->cell[copy]].copies, sizeof constraint->master);
     memset(constraint->weight, 0, sizeof constraint->weight);
@@ -11912,6 +12045,22 @@ static gx_result gxp_choose_samples(gx_body *body, gxp_touch_surface *s) {
     return result;
 }
 
+/* Lists the samples by the first facet that each is a corner of. */
+static gx_result gxp_list_chosen(gx_body *body, gxp_touch_surface *s) {
+    gxp_words *listed = &body->touch.roles; /* of each vertex: 1 if it is in the list */
+    gx_result result = gxp_start_words(body, &s->samples, s->vertex_count);
+    uint32_t i, n;
+    if (result == GX_OK) result = gxp_start_words(body, listed, s->vertex_count);
+    for (i = 0; i < s->vertex_count && result == GX_OK; i++) listed->data[listed->count++] = !(s->vertices[i].area > 0);
+    for (i = 0; i < s->facet_count && result == GX_OK; i++)
+        for (n = 0; n < 3; n++) {
+            const uint32_t vertex = s->facets[i].vertex[n];
+            if (!listed->data[vertex]) s->samples.data[s->samples.count++] = vertex;
+            listed->data[vertex] = 1;
+        }
+    return result;
+}
+
 /* Makes a surface anew, without state. */
 static gx_result gxp_make_surface(gx_body *body, gxp_touch_surface *to) {
     const gxp_skin own = body->skin;
@@ -11925,6 +12074,7 @@ static gx_result gxp_make_surface(gx_body *body, gxp_touch_surface *to) {
     if (result == GX_OK) result = gxp_mark_fragments(body);
     if (result == GX_OK) result = gxp_copy_samples(body, to);
     if (result == GX_OK) result = gxp_choose_samples(body, to);
+    if (result == GX_OK) result = gxp_list_chosen(body, to);
     gxp_release_skin(body);
     body->skin = own;
     return result;
@@ -12519,9 +12669,9 @@ static int gxp_has_changed(const gxp_touch *t, uint32_t id) {
     return i == t->named.count || GXP_FIRST(t->named.data[i]) != id || t->changed.data[GXP_SECOND(t->named.data[i])];
 }
 
-/* >>meeting: pairs of a step --------------------------------------------------------------------------------------- */
-/* In: the surface, where its material is and how fast. Out: the pairs that a step gets beside the caller's. Touches
-   what a step with contact works with. */
+/* >>meeting: does a vertex meet a facet? --------------------------------------------------------------------------- */
+/* In: the surface, where its material is and how fast. Out: for a vertex and a facet, what they are to each other
+   within a step. Touches positions and normals of a step with contact. */
 
 /* A vertex touches at most one facet, in whose frame all is told: the gap is the vertex's height above the facet's
    plane. Pairs stay what they are within the step, so that its energy is well defined. A pair without load, in front of
@@ -12578,6 +12728,174 @@ static void gxp_move_surface(gx_body *body, const gxp_touch_surface *s) {
     }
 }
 
+/* Is what is between a vertex and a facet the piece itself? They were near each other at rest, and did not face each
+   other, or the vertex was behind the facet. */
+static int gxp_is_thickness(const gxp_touch_surface *s, const gxp_touch_vertex *v, const gxp_touch_facet *f,
+                            const double share[3], double reach) {
+    double d[3], n[3], unit[3];
+    int i, k;
+    for (k = 0; k < 3; k++) {
+        d[k] = v->rest[k];
+        for (i = 0; i < 3; i++) d[k] -= share[i] * s->vertices[f->vertex[i]].rest[k];
+    }
+    if (gxp_dot(d, d) > 4 * reach * reach) return 0;
+    gxp_facet_normal(s, f, n);
+    return !gxp_unit(n, unit) || gxp_dot(v->normal, unit) > -GXP_TOUCH_FACING ||
+           gxp_dot(d, unit) < -GXP_TOUCH_BEHIND * v->size;
+}
+
+/* How far from a vertex facets that it meets are at most, m */
+static double gxp_touch_slack(const gxp_touch *t, const gxp_touch_vertex *v) {
+    return (t->desc.depth * (1 + GXP_TOUCH_SLANT) + GXP_TOUCH_NEAR + GXP_TOUCH_BESIDE) * v->size;
+}
+
+/* The same of facets that it is in front of, when it comes nearest to them */
+static double gxp_touch_ahead(const gxp_touch_vertex *v) {
+    return (GXP_TOUCH_NEAR * (1 + GXP_TOUCH_SLANT) + GXP_TOUCH_BESIDE) * v->size;
+}
+
+/* The height of a place above the plane through a corner of a facet */
+static double gxp_height_above(const double *x, const double *corner, const double n[3]) {
+    return n[0] * (x[0] - corner[0]) + n[1] * (x[1] - corner[1]) + n[2] * (x[2] - corner[2]);
+}
+
+/* The least and the most of three numbers */
+static void gxp_range_of(double a, double b, double c, double *low, double *high) {
+    const double least = a < b ? a : b, most = a < b ? b : a;
+    *low = least < c ? least : c;
+    *high = most > c ? most : c;
+}
+
+/* The speed at which a vertex comes nearer to a facet */
+static double gxp_approach_facet(const double *x, const double *const corner[3], const double n[3]) {
+    double approach = 0;
+    int k;
+    for (k = 0; k < 3; k++)
+        approach -= n[k] * (x[3 + k] - (corner[0][3 + k] + corner[1][3 + k] + corner[2][3 + k]) / 3);
+    return approach;
+}
+
+/* May a vertex meet a facet within the step, with a score of at most limit? The quick test before gxp_meets. */
+static int gxp_may_meet(const gxp_touch *t, const gxp_touch_surface *s, double dt, uint32_t vertex, uint32_t facet,
+                        double limit) {
+    const gxp_touch_facet *f = &s->facets[facet];
+    const double *x = t->moved + 9 * (size_t)vertex, *n = t->facing + 3 * (size_t)facet, *corner[3];
+    const double facing = -gxp_dot(x + 6, n), size = s->vertices[vertex].size, bit = 1e-9 * size;
+    double height, far, approach;
+    int i;
+    if (!(facing > GXP_TOUCH_FACING)) return 0;
+    height = gxp_height_above(x, t->moved + 9 * (size_t)f->vertex[0], n);
+    far = fabs(height) - bit;
+    if (!(height > -t->desc.depth * size - bit) || (far > 0 && far * far > limit)) return 0;
+    for (i = 0; i < 3; i++) {
+        if (f->vertex[i] == vertex) return 0;
+        corner[i] = t->moved + 9 * (size_t)f->vertex[i];
+    }
+    if (height < GXP_TOUCH_NEAR * size) return 1;
+    approach = gxp_approach_facet(x, corner, n);
+    return height - (approach > 0 ? dt * approach : 0) < GXP_TOUCH_NEAR * size + bit;
+}
+
+/* May the origin be so near a triangle, and so little beside it? The quick test before the nearest place is found. p:
+   its corners, n: its normal */
+static int gxp_may_be_near(double p[3][3], const double n[3], double near, double beside) {
+    const double a = gxp_dot(p[0], n), b = gxp_dot(p[1], n), c = gxp_dot(p[2], n);
+    double low, high, most;
+    int k, far = 0;
+    gxp_range_of(a, b, c, &low, &high);
+    most = high > -low ? high : -low;
+    beside += GXP_TOUCH_SLANT * most;
+    for (k = 0; k < 3; k++) {
+        gxp_range_of(p[0][k], p[1][k], p[2][k], &low, &high);
+        far |= (low > near) | (high < -near);
+        gxp_range_of(p[0][k] - a * n[k], p[1][k] - b * n[k], p[2][k] - c * n[k], &low, &high);
+        far |= (low > beside) | (high < -beside);
+    }
+    return !far;
+}
+
+/* Does a vertex meet a facet within the step, with a score of at most pair.score? pair: its vertex and facet are set;
+   receives all else. Where the two come near each other, the place is the one where the vertex will be when the gap is
+   closed. */
+static int gxp_meets(const gx_body *body, const gxp_touch_surface *s, double dt, gxp_touch_pair *pair) {
+    const gxp_touch *t = &body->touch;
+    const gxp_touch_vertex *v = &s->vertices[pair->sample];
+    const gxp_touch_facet *f = &s->facets[pair->facet];
+    const double *x = t->moved + 9 * (size_t)pair->sample, *n = t->facing + 3 * (size_t)pair->facet;
+    const double facing = -gxp_dot(x + 6, n), bit = 1e-9 * v->size, *corner[3];
+    double p[3][3], y[3], d[3], height, time = 0, along, square, slack, near, reach;
+    int i, k;
+    for (i = 0; i < 3; i++) corner[i] = t->moved + 9 * (size_t)f->vertex[i];
+    height = gxp_height_above(x, corner[0], n);
+    slack = height > 0 ? gxp_touch_ahead(v) : gxp_touch_slack(t, v);
+    pair->approach = height > 0 ? gxp_approach_facet(x, corner, n) : 0;
+    if (pair->approach > 0) time = height < dt * pair->approach ? height / pair->approach : dt;
+    for (i = 0; i < 3; i++)
+        for (k = 0; k < 3; k++) p[i][k] = corner[i][k] - x[k] + time * (corner[i][3 + k] - x[3 + k]);
+    near = sqrt(pair->score);
+    near = near < slack ? near : slack;
+    if (!gxp_may_be_near(p, n, near + bit, GXP_TOUCH_BESIDE * v->size + bit)) return 0;
+    pair->share[0] = pair->share[1] = pair->share[2] = 0;
+    (void)gxp_near_triangle(p, GXP_TREE_ALL, pair->share);
+    for (k = 0; k < 3; k++) {
+        y[k] = pair->share[0] * p[0][k] + pair->share[1] * p[1][k] + pair->share[2] * p[2][k];
+        d[k] = x[k] - pair->share[0] * corner[0][k] - pair->share[1] * corner[1][k] - pair->share[2] * corner[2][k];
+        pair->normal[k] = n[k];
+    }
+    if (!(height > 0)) pair->approach = gxp_approach_facet(x, corner, n);
+    pair->gap = gxp_dot(d, n);
+    height = gxp_dot(y, n);
+    square = gxp_dot(y, y);
+    along = square > height * height ? sqrt(square - height * height) : 0;
+    reach = s->vertices[f->vertex[0]].size;
+    reach = t->desc.depth * (reach < v->size ? reach : v->size);
+    if (!(pair->gap > -reach * facing) ||
+        !(pair->gap - (pair->approach > 0 ? dt * pair->approach : 0) < GXP_TOUCH_NEAR * v->size) ||
+        !(along <= GXP_TOUCH_BESIDE * v->size + GXP_TOUCH_SLANT * fabs(height)) || !(square < slack * slack))
+        return 0;
+    pair->score = (square + pair->gap * pair->gap) / (facing * facing);
+    return v->fragment != f->fragment || !gxp_is_thickness(s, v, f, pair->share, reach);
+}
+
+/* Do two pieces touch, or a piece and a collider, if they meet? */
+static int gxp_is_let(const gxp_touch *t, uint32_t fragment, uint32_t other, uint32_t collider) {
+    return t->filter == NULL || t->filter(t->filter_user, fragment, other, collider);
+}
+
+/* Tries one facet; of equal ones the first in the surface's order is taken. */
+static void gxp_try_facet(const gx_body *body, const gxp_touch_surface *s, double dt, uint32_t facet,
+                          gxp_touch_pair *best) {
+    gxp_touch_pair pair;
+    if (!gxp_may_meet(&body->touch, s, dt, best->sample, facet, best->score)) return;
+    if (!gxp_is_let(&body->touch, s->vertices[best->sample].fragment, s->facets[facet].fragment, GXP_NONE)) return;
+    pair.sample = best->sample;
+    pair.facet = facet;
+    pair.score = best->score;
+    if (!gxp_meets(body, s, dt, &pair) || pair.score > best->score ||
+        (!(pair.score < best->score) && facet > best->facet))
+        return;
+    best->facet = facet;
+    best->gap = pair.gap;
+    best->approach = pair.approach;
+    best->score = pair.score;
+    memcpy(best->share, pair.share, sizeof best->share);
+    memcpy(best->normal, pair.normal, sizeof best->normal);
+}
+
+/* >>seeking: the pairs of a step ----------------------------------------------------------------------------------- */
+/* In: the surface, where its material is and how fast. Out: the pairs that a step gets beside the caller's. Touches
+   what a step with contact works with. */
+
+/* A tree of boxes over the facets, in their order. Samples that are near each other and face alike go through it
+   together: down to what all of many may meet, from there to what a few may meet, then each for itself, with the facet
+   of the last step as the first bound. What is left out cannot be met, or is further than what is found: so a sample
+   meets the same facet as by trying all. */
+
+/* Samples that are sought together, at most: those that leave out boxes together first, then those that list leaves
+   together. With half or twice of either a step takes up to 4 % longer. A cosine: how alike they face at rest */
+enum { GXP_TOUCH_MANY = 64, GXP_TOUCH_FEW = 16 };
+#define GXP_TOUCH_ALIKE 0.7
+
 /* Adds a point or a direction to bounds. */
 static void gxp_add_to_bounds(const double *x, gxp_bounds *box) {
     int k;
@@ -12623,173 +12941,104 @@ static void gxp_fit_facets(gx_body *body, const gxp_touch_surface *s, double dt)
     }
 }
 
-/* Is what is between a vertex and a facet the piece itself? They were near each other at rest, and did not face each
-   other, or the vertex was behind the facet. */
-static int gxp_is_thickness(const gxp_touch_surface *s, const gxp_touch_vertex *v, const gxp_touch_facet *f,
-                            const double share[3], double reach) {
-    double d[3], n[3], unit[3];
-    int i, k;
-    for (k = 0; k < 3; k++) {
-        d[k] = v->rest[k];
-        for (i = 0; i < 3; i++) d[k] -= share[i] * s->vertices[f->vertex[i]].rest[k];
-    }
-    if (gxp_dot(d, d) > 4 * reach * reach) return 0;
-    gxp_facet_normal(s, f, n);
-    return !gxp_unit(n, unit) || gxp_dot(v->normal, unit) > -GXP_TOUCH_FACING ||
-           gxp_dot(d, unit) < -GXP_TOUCH_BEHIND * v->size;
+/* The least and the most of products of numbers from two ranges */
+static void gxp_range_product(double a, double b, double c, double d, double *low, double *high) {
+    const double ac = a * c, ad = a * d, bc = b * c, bd = b * d;
+    const double least = ac < ad ? ac : ad, most = ac < ad ? ad : ac, one = bc < bd ? bc : bd,
+                 other = bc < bd ? bd : bc;
+    *low = least < one ? least : one;
+    *high = most < other ? other : most;
 }
 
-/* How far from a vertex facets that it meets are at most, m */
-static double gxp_touch_slack(const gxp_touch *t, const gxp_touch_vertex *v) {
-    return (t->desc.depth * (1 + GXP_TOUCH_SLANT) + GXP_TOUCH_NEAR + GXP_TOUCH_BESIDE) * v->size;
-}
-
-/* The same of facets that it is in front of, when it comes nearest to them */
-static double gxp_touch_ahead(const gxp_touch_vertex *v) {
-    return (GXP_TOUCH_NEAR * (1 + GXP_TOUCH_SLANT) + GXP_TOUCH_BESIDE) * v->size;
-}
-
-/* The speed at which a vertex comes nearer to a facet, and its height above the plane of it */
-static double gxp_approach_facet(const double *x, const double *const corner[3], const double n[3], double *height) {
-    double approach = 0;
-    int k;
-    for (*height = 0, k = 0; k < 3; k++) {
-        approach -= n[k] * (x[3 + k] - (corner[0][3 + k] + corner[1][3 + k] + corner[2][3 + k]) / 3);
-        *height += n[k] * (x[k] - corner[0][k]);
-    }
-    return approach;
-}
-
-/* May a vertex meet a facet within the step, with a score of at most limit? The quick test before gxp_meets. */
-static int gxp_may_meet(const gxp_touch *t, const gxp_touch_surface *s, double dt, uint32_t vertex, uint32_t facet,
-                        double limit) {
-    const gxp_touch_facet *f = &s->facets[facet];
-    const double *x = t->moved + 9 * (size_t)vertex, *n = t->facing + 3 * (size_t)facet, *corner[3];
-    const double facing = -gxp_dot(x + 6, n), size = s->vertices[vertex].size, bit = 1e-9 * size;
-    double height, approach;
-    int i;
-    if (!(facing > GXP_TOUCH_FACING)) return 0;
-    for (i = 0; i < 3; i++) {
-        if (f->vertex[i] == vertex) return 0;
-        corner[i] = t->moved + 9 * (size_t)f->vertex[i];
-    }
-    approach = gxp_approach_facet(x, corner, n, &height);
-    return height > -t->desc.depth * size - bit && height - dt * fmax(0, approach) < GXP_TOUCH_NEAR * size + bit &&
-           fabs(height) < sqrt(limit) + bit;
-}
-
-/* Does a vertex meet a facet within the step? pair: its vertex and facet are set; receives all else. Where the two come
-   near each other, the place is the one where the vertex will be when the gap is closed. */
-static int gxp_meets(const gx_body *body, const gxp_touch_surface *s, double dt, gxp_touch_pair *pair) {
-    const gxp_touch *t = &body->touch;
-    const gxp_touch_vertex *v = &s->vertices[pair->sample];
-    const gxp_touch_facet *f = &s->facets[pair->facet];
-    const double *x = t->moved + 9 * (size_t)pair->sample, *n = t->facing + 3 * (size_t)pair->facet;
-    const double facing = -gxp_dot(x + 6, n), *corner[3];
-    const double reach = t->desc.depth * fmin(v->size, s->vertices[f->vertex[0]].size);
-    double p[3][3], y[3], d[3], height, time = 0, along, slack;
-    int i, k;
-    for (i = 0; i < 3; i++) corner[i] = t->moved + 9 * (size_t)f->vertex[i];
-    pair->approach = gxp_approach_facet(x, corner, n, &height);
-    slack = height > 0 ? gxp_touch_ahead(v) : gxp_touch_slack(t, v);
-    if (height > 0 && pair->approach > 0) time = height < dt * pair->approach ? height / pair->approach : dt;
-    for (i = 0; i < 3; i++)
-        for (k = 0; k < 3; k++) p[i][k] = corner[i][k] - x[k] + time * (corner[i][3 + k] - x[3 + k]);
-    pair->share[0] = pair->share[1] = pair->share[2] = 0;
-    (void)gxp_near_triangle(p, GXP_TREE_ALL, pair->share);
-    for (k = 0; k < 3; k++) {
-        y[k] = pair->share[0] * p[0][k] + pair->share[1] * p[1][k] + pair->share[2] * p[2][k];
-        d[k] = x[k] - pair->share[0] * corner[0][k] - pair->share[1] * corner[1][k] - pair->share[2] * corner[2][k];
-        pair->normal[k] = n[k];
-    }
-    pair->gap = gxp_dot(d, n);
-    height = gxp_dot(y, n);
-    along = sqrt(fmax(0, gxp_dot(y, y) - height * height));
-    if (!(pair->gap > -reach * facing) || !(pair->gap - dt * fmax(0, pair->approach) < GXP_TOUCH_NEAR * v->size) ||
-        !(along <= GXP_TOUCH_BESIDE * v->size + GXP_TOUCH_SLANT * fabs(height)) || !(gxp_dot(y, y) < slack * slack))
-        return 0;
-    pair->score = (gxp_dot(y, y) + pair->gap * pair->gap) / (facing * facing);
-    return v->fragment != f->fragment || !gxp_is_thickness(s, v, f, pair->share, reach);
-}
-
-/* Do two pieces touch, or a piece and a collider, if they meet? */
-static int gxp_is_let(const gxp_touch *t, uint32_t fragment, uint32_t other, uint32_t collider) {
-    return t->filter == NULL || t->filter(t->filter_user, fragment, other, collider);
-}
-
-/* Tries one facet; of equal ones the first in the surface's order is taken. */
-static void gxp_try_facet(const gx_body *body, const gxp_touch_surface *s, double dt, uint32_t facet,
-                          gxp_touch_pair *best) {
-    gxp_touch_pair pair;
-    if (!gxp_may_meet(&body->touch, s, dt, best->sample, facet, best->score)) return;
-    if (!gxp_is_let(&body->touch, s->vertices[best->sample].fragment, s->facets[facet].fragment, GXP_NONE)) return;
-    pair = *best;
-    pair.facet = facet;
-    if (gxp_meets(body, s, dt, &pair) &&
-        (pair.score < best->score || (!(pair.score > best->score) && facet < best->facet)))
-        *best = pair;
-}
-
-/* The squared distance of a box from a vertex within the step; GXP_TREE_BEYOND if all its facets face away, or if it is
-   further than ahead, squared, and the vertex is in front of them all. x: position, velocity and normal; end: where it
-   is at the step's end */
-static double gxp_box_gap(const gxp_touch_box *box, const double *x, const double end[3], double ahead) {
-    double facing = 0, square = 0, height = 0;
+/* The squared distance of a box from samples within the step; GXP_TREE_BEYOND if it is above limit or if none of them
+   meets a facet there. A way y from a sample to the place of a facet that it meets has a height h = y.n over the
+   sample, -ahead <= h <= slack, and |y - h n| <= beside + slant |h|. */
+static double gxp_box_gap(const gxp_touch_box *box, const gxp_touch_crowd *crowd, double limit) {
+    const gxp_touch_box *own = &crowd->own;
+    double low[3], high[3], square = 0, facing = 0, least = 0, most = 0, width;
     int k;
     for (k = 0; k < 3; k++) {
-        const double below[2] = {x[k] - box->from.high[k], end[k] - box->to.high[k]};
-        const double above[2] = {box->from.low[k] - x[k], box->to.low[k] - end[k]};
-        const double right = below[0] < below[1] ? below[0] : below[1],
-                     left = above[0] < above[1] ? above[0] : above[1];
-        const double gap = right > left ? right : left;
-        facing -= x[6 + k] * (x[6 + k] > 0 ? box->normals.low[k] : box->normals.high[k]);
+        const double left = box->from.low[k] - own->from.high[k], right = box->from.high[k] - own->from.low[k];
+        const double left_end = box->to.low[k] - own->to.high[k], right_end = box->to.high[k] - own->to.low[k];
+        double gap;
+        low[k] = left < left_end ? left : left_end;
+        high[k] = right > right_end ? right : right_end;
+        gap = low[k] > -high[k] ? low[k] : -high[k];
         square += gap > 0 ? gap * gap : 0;
     }
-    if (facing < GXP_TOUCH_FACING * (1 - 1e-9)) return GXP_TREE_BEYOND;
-    for (k = 0; k < 3 && square > ahead; k++) {
-        const double low = x[k] - box->from.high[k], high = x[k] - box->from.low[k];
-        const double one = low * (low < 0 ? box->normals.high[k] : box->normals.low[k]);
-        const double other = high * (high < 0 ? box->normals.high[k] : box->normals.low[k]);
-        height += one < other ? one : other;
+    if (square > limit) return GXP_TREE_BEYOND;
+    for (k = 0; k < 3; k++) {
+        const double *n = box->normals.low + k, *m = box->normals.high + k;
+        double one, other;
+        gxp_range_product(own->normals.low[k], own->normals.high[k], *n, *m, &one, &other);
+        facing -= one;
+        gxp_range_product(low[k], high[k], *n, *m, &one, &other);
+        least += one;
+        most += other;
     }
-    return height > 0 ? GXP_TREE_BEYOND : square;
+    if (facing < GXP_TOUCH_FACING * (1 - 1e-9)) return GXP_TREE_BEYOND;
+    least -= 1e-9 * crowd->size;
+    most += 1e-9 * crowd->size;
+    if (least > crowd->slack || most < -crowd->ahead || (most < 0 && square > crowd->ahead * crowd->ahead))
+        return GXP_TREE_BEYOND;
+    least = least > -crowd->ahead ? least : -crowd->ahead;
+    most = most < crowd->slack ? most : crowd->slack;
+    width = crowd->beside + GXP_TOUCH_SLANT * (most > -least ? most : -least);
+    for (k = 0; k < 3; k++) {
+        double one, other;
+        gxp_range_product(least, most, box->normals.low[k], box->normals.high[k], &one, &other);
+        if (low[k] > other + width || high[k] < one - width) return GXP_TREE_BEYOND;
+    }
+    return square;
 }
 
-/* Finds the facet that a vertex meets. best: its vertex is set, and a facet to try first; receives the facet, or
-   GXP_NONE. The nearer of two boxes comes first, and what is found leaves out all that is further. */
-static void gxp_seek_facet(const gx_body *body, const gxp_touch_surface *s, double dt, uint32_t first,
-                           gxp_touch_pair *best) {
-    const gxp_touch *t = &body->touch;
-    const gxp_touch_vertex *v = &s->vertices[best->sample];
-    const double *x = t->moved + 9 * (size_t)best->sample, slack = gxp_touch_slack(t, v);
-    const double ahead = gxp_touch_ahead(v) * (1 + 1e-9);
-    double limit = slack * slack, gaps[64], gap[2];
-    uint32_t stack[64], count = 0, i;
+/* Starts a crowd without samples. */
+static void gxp_start_crowd(gxp_touch_crowd *crowd) {
+    gxp_empty_bounds(&crowd->own.from);
+    gxp_empty_bounds(&crowd->own.to);
+    gxp_empty_bounds(&crowd->own.normals);
+    crowd->slack = crowd->ahead = crowd->beside = crowd->size = 0;
+}
+
+/* Adds a sample to a crowd. */
+static void gxp_join_crowd(const gxp_touch *t, const gxp_touch_surface *s, double dt, uint32_t sample,
+                           gxp_touch_crowd *crowd) {
+    const gxp_touch_vertex *v = &s->vertices[sample];
+    const double *x = t->moved + 9 * (size_t)sample, more = 1 + 1e-9;
     double end[3];
     gxp_vertex_end(x, dt, end);
-    if (first != GXP_NONE) gxp_try_facet(body, s, dt, first, best);
-    stack[0] = 0;
-    gaps[count++] = 0;
-    while (count > 0) {
-        const uint32_t box = stack[--count];
-        const double near = sqrt(best->score) + 1e-9 * v->size;
-        limit = near * near < limit ? near * near : limit;
-        if (gaps[count] > limit) continue;
-        if (box + 1 < t->leaf_count) {
-            int second;
-            for (i = 0; i < 2; i++) gap[i] = gxp_box_gap(&t->boxes[2 * box + 1 + i], x, end, ahead * ahead);
-            second = gap[1] < gap[0];
-            for (i = 0; i < 2; i++, second = !second)
-                if (gap[!second] <= limit) {
-                    stack[count] = 2 * box + 1 + (uint32_t)!second;
-                    gaps[count++] = gap[!second];
-                }
-            continue;
+    gxp_add_to_bounds(x, &crowd->own.from);
+    gxp_add_to_bounds(end, &crowd->own.to);
+    gxp_add_to_bounds(x + 6, &crowd->own.normals);
+    crowd->size = fmax(crowd->size, v->size);
+    crowd->slack = fmax(crowd->slack, gxp_touch_slack(t, v) * more);
+    crowd->ahead = fmax(crowd->ahead, gxp_touch_ahead(v) * more);
+    crowd->beside = fmax(crowd->beside, GXP_TOUCH_BESIDE * v->size + 1e-9 * v->size);
+}
+
+/* Finds the boxes in and below those of `from`, or below the root, that may hold what a crowd meets: those of a level
+   of the tree with `level` boxes. */
+static gx_result gxp_narrow_boxes(gx_body *body, const gxp_touch_crowd *crowd, const gxp_words *from, uint32_t level,
+                                  gxp_words *found) {
+    const gxp_touch_box *boxes = body->touch.boxes;
+    const double limit = crowd->slack * crowd->slack;
+    uint32_t stack[64], count, i;
+    gx_result result = GX_OK;
+    found->count = 0;
+    for (i = 0; i < (from != NULL ? from->count : 1) && result == GX_OK; i++) {
+        stack[0] = from != NULL ? from->data[i] : 0;
+        for (count = 1; count > 0 && result == GX_OK;) {
+            const uint32_t box = stack[--count];
+            if (gxp_box_gap(&boxes[box], crowd, limit) > limit) continue;
+            if (box + 1 >= level) {
+                result = gxp_push(body, found, box);
+                continue;
+            }
+            stack[count++] = 2 * box + 2;
+            stack[count++] = 2 * box + 1;
         }
-        for (i = GXP_TOUCH_LEAF * (box + 1 - t->leaf_count);
-             i < GXP_TOUCH_LEAF * (box + 2 - t->leaf_count) && i < s->facet_count; i++)
-            gxp_try_facet(body, s, dt, i, best);
     }
+    return result;
 }
 
 /* A pair of a sample that touches nothing so far */
@@ -12800,6 +13049,137 @@ static gxp_touch_pair gxp_no_pair(uint32_t sample) {
     pair.facet = pair.collider = pair.other = GXP_NONE;
     pair.score = GXP_TREE_ALL;
     return pair;
+}
+
+/* How far from a sample a better facet than that of its pair may be at most, m */
+static double gxp_pair_slack(const gxp_touch_surface *s, const gxp_touch_pair *best, double slack) {
+    return fmin(sqrt(best->score) + 1e-9 * s->vertices[best->sample].size, slack);
+}
+
+/* The boxes of touch.near from the step's start to its end, as a crowd sees them that moves by `shift` within the step:
+   touch.passed, low[3] and high[3], each of all boxes */
+static gx_result gxp_list_passed(gx_body *body, const double shift[3]) {
+    gxp_touch *t = &body->touch;
+    const uint32_t n = t->near.count;
+    uint32_t i;
+    int k;
+    const gx_result result =
+        gxp_reserve(&body->config.allocator, &t->passed, sizeof *t->passed, 0, &t->passed_capacity, 6 * (size_t)n);
+    for (i = 0; i < n && result == GX_OK; i++) {
+        const gxp_touch_box *box = &t->boxes[t->near.data[i]];
+        for (k = 0; k < 3; k++) {
+            const double low = box->to.low[k] - shift[k], high = box->to.high[k] - shift[k];
+            t->passed[(size_t)n * (size_t)k + i] = box->from.low[k] < low ? box->from.low[k] : low;
+            t->passed[(size_t)n * (size_t)(3 + k) + i] = box->from.high[k] > high ? box->from.high[k] : high;
+        }
+    }
+    return result;
+}
+
+/* Finds the leaves of touch.near that are within reach of a sample: `kept`. Returns how many */
+static uint32_t gxp_keep_leaves(const gxp_touch *t, const gxp_touch_box *own, const double shift[3], double reach,
+                                uint32_t *kept) {
+    const uint32_t n = t->near.count;
+    const double *low = t->passed, *high = t->passed + 3 * (size_t)n;
+    double from[3], to[3];
+    uint32_t i, count = 0;
+    int k;
+    for (k = 0; k < 3; k++) {
+        const double end = own->to.low[k] - shift[k];
+        from[k] = (own->from.low[k] < end ? own->from.low[k] : end) - reach;
+        to[k] = (own->from.low[k] > end ? own->from.low[k] : end) + reach;
+    }
+    for (i = 0; i < n; i++) {
+        kept[count] = t->near.data[i];
+        count += (uint32_t)((low[i] <= to[0]) & (low[n + i] <= to[1]) & (low[2 * n + i] <= to[2]) &
+                            (high[i] >= from[0]) & (high[n + i] >= from[1]) & (high[2 * n + i] >= from[2]));
+    }
+    return count;
+}
+
+/* Finds the facet that a vertex meets among those of touch.near. best: its vertex, and a facet that it meets or
+   GXP_NONE; receives the best one. What is found leaves out all that is further. */
+static void gxp_seek_facet(const gx_body *body, const gxp_touch_surface *s, double dt, const double shift[3],
+                           gxp_touch_pair *best) {
+    const gxp_touch *t = &body->touch;
+    uint32_t *kept = t->kept_leaves.data, count, i, j;
+    gxp_touch_crowd crowd;
+    gxp_start_crowd(&crowd);
+    gxp_join_crowd(t, s, dt, best->sample, &crowd);
+    count = gxp_keep_leaves(t, &crowd.own, shift, gxp_pair_slack(s, best, crowd.slack) + 1e-9 * crowd.size, kept);
+    for (i = 0; i < count; i++) {
+        const double slack = gxp_pair_slack(s, best, crowd.slack), limit = slack * slack;
+        const uint32_t leaf = kept[i] + 1 - t->leaf_count;
+        if (gxp_box_gap(&t->boxes[kept[i]], &crowd, limit) > limit) continue;
+        for (j = GXP_TOUCH_LEAF * leaf; j < GXP_TOUCH_LEAF * (leaf + 1) && j < s->facet_count; j++)
+            gxp_try_facet(body, s, dt, j, best);
+    }
+}
+
+/* Finds the facets that a few samples meet: surface.guesses. touch.crowd: boxes in which they are. What they met when
+   they were sought last comes first. */
+static gx_result gxp_seek_few(gx_body *body, const gxp_touch_surface *s, double dt, const uint32_t *samples,
+                              uint32_t count) {
+    gxp_touch *t = &body->touch;
+    gxp_touch_pair best[GXP_TOUCH_FEW];
+    gxp_touch_crowd crowd;
+    double slack = 0, shift[3];
+    uint32_t i;
+    int k;
+    gx_result result;
+    gxp_start_crowd(&crowd);
+    for (i = 0; i < count; i++) {
+        const uint32_t guess = s->guesses.data[samples[i]];
+        best[i] = gxp_no_pair(samples[i]);
+        gxp_join_crowd(t, s, dt, samples[i], &crowd);
+        if (guess != GXP_NONE) gxp_try_facet(body, s, dt, guess, &best[i]);
+        slack = fmax(slack, gxp_pair_slack(s, &best[i], gxp_touch_slack(t, &s->vertices[samples[i]])));
+    }
+    crowd.slack = slack * (1 + 1e-9);
+    result = gxp_narrow_boxes(body, &crowd, &t->crowd, t->leaf_count, &t->near);
+    for (k = 0; k < 3; k++)
+        shift[k] = 0.5 * (crowd.own.to.low[k] + crowd.own.to.high[k] - crowd.own.from.low[k] - crowd.own.from.high[k]);
+    if (result == GX_OK) result = gxp_start_words(body, &t->kept_leaves, t->near.count + 1);
+    if (result == GX_OK) result = gxp_list_passed(body, shift);
+    for (i = 0; i < count && result == GX_OK; i++) {
+        if (t->near.count > 0) gxp_seek_facet(body, s, dt, shift, &best[i]);
+        s->guesses.data[samples[i]] = best[i].facet;
+    }
+    return result;
+}
+
+/* How many of the samples from `first` on, at most `most`, are of one piece and face alike? */
+static uint32_t gxp_crowd_size(const gxp_touch_surface *s, const uint32_t *samples, uint32_t left, uint32_t most) {
+    const gxp_touch_vertex *v = &s->vertices[samples[0]];
+    uint32_t i;
+    for (i = 1; i < left && i < most; i++) {
+        const gxp_touch_vertex *w = &s->vertices[samples[i]];
+        if (v->fragment != w->fragment || gxp_dot(v->normal, w->normal) < GXP_TOUCH_ALIKE) break;
+    }
+    return i;
+}
+
+/* Finds the facets that all samples meet. Boxes that none of many samples meets are left out for all of them at once,
+   then those that none of a few meets. */
+static gx_result gxp_seek_facets(gx_body *body, const gxp_touch_surface *s, double dt) {
+    gxp_touch *t = &body->touch;
+    const uint32_t count = s->samples.count, *samples = s->samples.data;
+    uint32_t first, i, n, few;
+    gx_result result = GX_OK;
+    for (first = 0; first < count && result == GX_OK; first += n) {
+        gxp_touch_crowd crowd;
+        gxp_start_crowd(&crowd);
+        n = gxp_crowd_size(s, samples + first, count - first, GXP_TOUCH_MANY);
+        for (i = first; i < first + n; i++) gxp_join_crowd(t, s, dt, samples[i], &crowd);
+        result = gxp_narrow_boxes(body, &crowd, NULL, t->leaf_count / 8, &t->crowd);
+        if (t->crowd.count == 0)
+            for (i = first; i < first + n; i++) s->guesses.data[samples[i]] = GXP_NONE;
+        for (i = 0; i < n && t->crowd.count > 0 && result == GX_OK; i += few) {
+            few = gxp_crowd_size(s, samples + first + i, n - i, GXP_TOUCH_FEW);
+            result = gxp_seek_few(body, s, dt, samples + first + i, few);
+        }
+    }
+    return result;
 }
 
 /* The vertex by whose element a sample is measured */
@@ -12925,14 +13305,14 @@ static gx_result gxp_seek_colliders(gx_body *body, const gxp_touch_surface *s, d
 static gx_result gxp_seek_pairs(gx_body *body, const gxp_touch_surface *s, double dt, gx_failure *failure) {
     gxp_touch *t = &body->touch;
     gx_result result = gxp_list_all_beside(body, s, dt, failure);
-    uint32_t i, next = 0, *guesses = s->guesses.data;
+    uint32_t i, next = 0;
     const uint32_t state_end = s->state_count > 0 ? s->states[s->state_count - 1].sample + 1 : 0;
     t->found = 0;
+    if (result == GX_OK) result = gxp_end(failure, gxp_seek_facets(body, s, dt));
     for (i = 0; i < s->vertex_count && result == GX_OK && s->facet_count > 0; i++) {
-        gxp_touch_pair best = gxp_no_pair(i);
-        if (s->vertices[i].area > 0) gxp_seek_facet(body, s, dt, guesses[i], &best);
-        guesses[i] = best.facet;
-        if (best.facet != GXP_NONE) result = gxp_list_pair(body, s, &best, failure);
+        gxp_touch_pair pair = gxp_no_pair(i);
+        pair.facet = s->guesses.data[i];
+        if (pair.facet != GXP_NONE && gxp_meets(body, s, dt, &pair)) result = gxp_list_pair(body, s, &pair, failure);
         if (result == GX_OK && (t->order.count > 0 || i < state_end))
             result = gxp_seek_colliders(body, s, dt, i, &next, failure);
     }
@@ -19721,6 +20101,10 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
     return gxp_end(failure, result);
 }
 
+#undef GXP_SEARCH_PART
+#undef GXP_SEARCH_PARTS
+#undef GXP_SEARCH_ROOM
+#undef GXP_PREPARE_PART
 #undef GXP_COLD
 #undef GXP_APART
 #undef GXP_PREFETCH
@@ -19757,6 +20141,7 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_TOUCH_SLANT
 #undef GXP_TOUCH_SAME
 #undef GXP_TOUCH_BEHIND
+#undef GXP_TOUCH_ALIKE
 #undef GXP_TOUCH_COPIES
 #undef GXP_TREE_LEAVES
 #undef GXP_TREE_LEAF

@@ -41,7 +41,7 @@
  *                   giving back what nothing needs: is_sparse, survey, compact, forget
  *                   reading: gxb_complex_point and others
  *                   questions: gxb_complex_side, turn, compare, leaf_at, winding, barycentric, support,
- *                   barycentric_fine, barycentric_fixed
+ *                   prepare_points, barycentric_fine, barycentric_fixed
  *                   points of moved elements: gxb_pullback_misses, set, contains, orient, weights,
  *                   gxb_complex_pullback_side
  *     >>stream      a complex as bytes: gxb_stream_pass, has; gxb_complex_save, load
@@ -70,8 +70,9 @@
  *                     in one plane), >>merge (equal points)
  *     the result      >>states (vectors of winding numbers), >>winding (one for each subtriangle), >>floods (by
  *                     threads), >>result (triangles and vertices), >>retained (one that keeps its place), >>coarse
- * (fewer triangles) more about it   >>components (shells), >>volumes, >>containers (which shell lies in which), >>mend
- * (defects) functions       >>api
+ *                     (fewer triangles)
+ *     more about it   >>components (shells), >>volumes, >>containers (which shell lies in which), >>mend (defects)
+ *     functions       >>leaving (operands taken out), >>api
  *
  * How the complex works. Each element of the mesh starts as one convex leaf, bounded by four facets, which it shares
  * with its neighbours. A triangle is clipped down the element's tree of planes (a binary space partition); each leaf
@@ -655,6 +656,10 @@ GXFEM_API int gxb_complex_winding(gxb_complex *complex, const uint32_t *points, 
 /* Barycentric coordinates of a point in an element, each with a relative error below 2^-49 of its own (0 where it is
  * 0). */
 GXFEM_API void gxb_complex_barycentric(gxb_complex *complex, uint32_t point, uint32_t element, double lambda[4]);
+/* Finds where on their mesh edges and faces the points first ... end-1 lie, as gxb_complex_barycentric does when it
+ * first needs that, as far as pairs of doubles tell. It then finds the same coordinates sooner. Threads may do this
+ * side by side for different points, while nothing else is done with the complex. Takes 16 kB of stack. */
+GXFEM_API void gxb_complex_prepare_points(gxb_complex *complex, uint32_t first, uint32_t end);
 /* Bit k is set unless barycentric coordinate k is 0 by the point's definition. Needs no arithmetic. */
 GXFEM_API unsigned gxb_complex_support(const gxb_complex *complex, uint32_t point, uint32_t element);
 /* The coordinates with a relative error below 2^-180. */
@@ -859,10 +864,11 @@ GXFEM_API gx_result gxb_boolean_set_retained(gxb_boolean *boolean, int retained,
 GXFEM_API gx_result gxb_boolean_add(gxb_boolean *boolean, const gxb_operand *operand, gx_failure *failure);
 /* Takes an operand out, by its index in the order in which operands were added. The result is that of the other ones:
  * the same solid as that of a Boolean without it. Indices stay. An operand that moves is taken out and added anew, as
- * the last one. What it has divided stays divided, and vertices there may name it, unless the result is coarse; its
- * triangles go on to take memory, and time where new operands meet them. An evaluation then looks only at what the box
- * of the operand meets, or at all if it was the first one or an intersection. Errors: ARGUMENT, INDEX (no such operand,
- * or it is out already), MEMORY, LIMIT. */
+ * the last one. What it has divided stays divided at first, and vertices there may name it, unless the result is
+ * coarse. An evaluation then looks only at what the box of the operand meets, or at all if it was the first one or an
+ * intersection. Once a quarter of what is held is of operands that were taken out, an evaluation arranges those that
+ * are left anew. So it takes the time of a new Boolean then, and gives memory back for what comes; all of a retained
+ * result is new. Errors: ARGUMENT, INDEX (no such operand, or it is out already), MEMORY, LIMIT. */
 GXFEM_API gx_result gxb_boolean_remove(gxb_boolean *boolean, uint32_t operand, gx_failure *failure);
 /* The result of all operands so far. Errors: ARGUMENT, SEQUENCE (no operand), MEMORY, LIMIT, OVERLAP (a surface vouched
  * for as simple is not). After an error the Boolean keeps its operands and can be evaluated again. */
@@ -5349,16 +5355,22 @@ static GXBP_COLD void gxbp_exact_edge_parameter(gxb_complex *cx, gxb_cpoint *p) 
     p->parameter[1] = -gxb_num_ratio(&a, &d);
 }
 
+/* Finds by pairs where on the mesh edge the point lies. 0: they do not settle it */
+static int gxbp_pair_on_edge(gxb_complex *cx, uint32_t point) {
+    gxb_cpoint *p = &cx->store.points[point];
+    const gxbp_pair a = gxbp_pair_side(cx, p->def[0], p->def[2]), b = gxbp_pair_side(cx, p->def[1], p->def[2]);
+    const gxbp_pair d = gxbp_pair_add(&b, &a, -1), e = gxbp_pair_add(&a, &b, -1);
+    double parameter[2];
+    if (!gxbp_pair_ratio(&b, &d, &parameter[0]) || !gxbp_pair_ratio(&a, &e, &parameter[1])) return 0;
+    memcpy(p->parameter, parameter, sizeof parameter);
+    return 1;
+}
+
 /* Where on the mesh edge from node def[0] to node def[1] the point lies: 0 ... 1. Kept, since every element around the
  * edge needs it. */
 static double gxbp_edge_parameter(gxb_complex *cx, uint32_t point, int from_end) {
     gxb_cpoint *p = &cx->store.points[point];
-    if (p->parameter[0] < 0) {
-        const gxbp_pair a = gxbp_pair_side(cx, p->def[0], p->def[2]), b = gxbp_pair_side(cx, p->def[1], p->def[2]);
-        const gxbp_pair d = gxbp_pair_add(&b, &a, -1), e = gxbp_pair_add(&a, &b, -1);
-        if (!gxbp_pair_ratio(&b, &d, &p->parameter[0]) || !gxbp_pair_ratio(&a, &e, &p->parameter[1]))
-            gxbp_exact_edge_parameter(cx, p);
-    }
+    if (p->parameter[0] < 0 && !gxbp_pair_on_edge(cx, point)) gxbp_exact_edge_parameter(cx, p);
     return p->parameter[from_end];
 }
 
@@ -5492,6 +5504,26 @@ static int gxbp_face_barycentric(gxb_complex *cx, uint32_t point, uint32_t eleme
             if (n[k] == node[i]) lambda[k] = p->parameter[i];
     }
     return 1;
+}
+
+/* Each task has a cache of pairs of its own. */
+GXFEM_API void gxb_complex_prepare_points(gxb_complex *cx, uint32_t first, uint32_t end) {
+    gxb_complex own = *cx;
+    gxbp_pairs pairs;
+    uint32_t face;
+    own.pairs = &pairs;
+    gxbp_forget_pairs(&own);
+    for (; first < end; first++) {
+        const gxb_cpoint *p = &own.store.points[first];
+        if (p->parameter[0] >= 0) continue;
+        if (p->kind == GXB_LINE_PLANE && p->def[0] < own.node_count && p->def[1] < own.node_count)
+            (void)gxbp_pair_on_edge(&own, first);
+        for (face = 0; p->kind == GXB_THREE_PLANES && face < 3; face++) {
+            if (!gxbp_is_face_plane(&own, p->def[face])) continue;
+            (void)gxbp_pair_in_face(&own, first, face);
+            break;
+        }
+    }
 }
 
 /* Computes by pairs the coordinates that are not known yet (-1). Those that pairs do not settle stay -1. */
@@ -8073,10 +8105,10 @@ typedef struct gxbp_operand {
     uint32_t simple;   /* vouched for, or found */
     uint32_t reached;  /* a subtriangle has got a state */
     uint32_t narrowed; /* the last intersection up to this operand, the first operand aside; 0: there is none */
-    uint32_t removed;  /* 1: it takes no part in results */
-    uint32_t source, source_count;
-    uint32_t bounds; /* of its leaves in gxb_boolean.bounds */
-    uint32_t *order; /* sources in the order of the tree's leaves, in memory of its own */
+    uint32_t removed;  /* it takes no part in results; 1 + the operands that were arranged when it was taken out */
+    uint32_t source, source_count; /* none: it was taken out, and the arrangement was made anew without it */
+    uint32_t bounds;               /* of its leaves in gxb_boolean.bounds */
+    uint32_t *order;               /* sources in the order of the tree's leaves, in memory of its own */
     gxbp_tree tree;
 } gxbp_operand;
 
@@ -8141,6 +8173,7 @@ typedef struct gxbp_crossings {
     uint32_t marks;        /* how often a source was found to meet something */
     uint32_t arranged;     /* operands that are in the arrangement */
     uint32_t segment_mark; /* segments before it are in the triangulations */
+    uint32_t dead;         /* sources of operands that were taken out, and segments of these and by these */
 } gxbp_crossings;
 
 /* The triangulations of all sources. Lives until an evaluation fails. */
@@ -14814,6 +14847,156 @@ static GXBP_COLD void gxbp_mend(gxb_boolean *b) {
     if (b->error == GX_OK && b->out.defect_count > 0) gxbp_mend_defects(b);
 }
 
+/* >>leaving: operands that are taken out --------------------------------------------------------------------------- */
+/* In: an operand that is taken out. Out: what may show something else without it; how much of the arrangement only such
+   operands have made; once that is a quarter, the operands that are left, alone, to be arranged anew. Touches all but
+   the caller's options. */
+
+#ifndef GXBP_HOLDS_MUCH_DEAD /* sources and segments: dead ones, all; tests replace it */
+#define GXBP_HOLDS_MUCH_DEAD(dead, all) ((dead) > (all) / 4)
+#endif
+
+/* Lists the subtriangles that may show something else without an operand: those that may meet its box. */
+static GXBP_COLD void gxbp_list_near(gxb_boolean *b, const gxbp_box *box) {
+    uint32_t i;
+    b->work.pending_count = 0;
+    gxbp_open_states(b, box);
+    if (b->error == GX_OK && GXBP_ROOM(b, mesh.changed, mesh.changed, b->work.pending_count))
+        for (i = 0; i < b->work.pending_count; i++) b->mesh.changed[b->mesh.changed_count++] = b->work.pending[i];
+    for (i = 0; i < b->work.pending_count; i++) b->mesh.subtriangles[b->work.pending[i]].state &= ~GXBP_OPEN;
+}
+
+/* Counts what is dead once an operand is taken out: its sources, its segments, and those that it made in other
+   operands, unless these went before and have been counted with them. */
+static GXBP_COLD void gxbp_count_dead(gxb_boolean *b, uint32_t operand) {
+    const gxbp_operand *o = &b->in.operands[operand];
+    uint32_t s, i;
+    b->crossings.dead += o->source_count;
+    for (s = o->source; s < o->source + o->source_count; s++)
+        for (i = b->in.sources[s].segments; i != GXB_NONE; i = b->crossings.segments[i].next) {
+            const uint32_t other = b->in.sources[b->crossings.segments[i].label].operand;
+            const gxbp_operand *q = &b->in.operands[other];
+            if (other == operand)
+                b->crossings.dead++;
+            else if (!q->removed || operand >= q->removed - 1)
+                b->crossings.dead += 2;
+        }
+}
+
+/* Operands are as they were added, and nothing is arranged. Computed points stay known. */
+static GXBP_COLD void gxbp_forget_arrangement(gxb_boolean *b) {
+    uint32_t s;
+    for (s = b->crossings.dead = 0; s < b->in.operand_count; s++)
+        if (b->in.operands[s].removed) b->crossings.dead += b->in.operands[s].source_count;
+    b->mesh.subtriangle_count = b->mesh.link_count = b->crossings.segment_count = b->crossings.edge_count =
+        b->crossings.edge_point_count = b->crossings.hit_count = b->crossings.dirty_count = 0;
+    b->crossings.arranged = b->crossings.segment_mark = b->winding.stated = b->out.shown_count = 0;
+    b->kept.valid = 0;
+    for (s = 0; s < b->in.source_count; s++) {
+        b->in.sources[s].flags &= (uint32_t)GXBP_DEGENERATE;
+        gxbp_make_whole(b, s, b->mesh.subtriangle_count++);
+    }
+}
+
+/* Takes operands that were taken out off the lists of sources and boxes. They keep their indices, and an empty box. */
+static GXBP_COLD void gxbp_close_ranks(gxb_boolean *b) {
+    uint32_t i, s, k, source = 0, bound = 0, box = 0;
+    for (i = 0; i < b->in.operand_count; i++) {
+        gxbp_operand *o = &b->in.operands[i];
+        const gxbp_tree *t = &o->tree;
+        const uint32_t count = o->source_count, leaves = t->size[0], boxes = t->level[t->levels - 1] + 1,
+                       back = o->source - source;
+        if (o->removed) {
+            gxbp_release(&b->store.allocator, o->order, (size_t)count * sizeof *o->order);
+            o->order = NULL;
+            o->source_count = o->tree.size[0] = o->tree.level[0] = 0;
+            o->tree.levels = 1;
+            for (k = 0; k < 3; k++) {
+                b->in.boxes[box].low[k] = (float)gxbp_power(126);
+                b->in.boxes[box].high[k] = -b->in.boxes[box].low[k];
+            }
+        } else {
+            memmove(b->in.sources + source, b->in.sources + o->source, count * sizeof *b->in.sources);
+            memmove(b->in.bounds + bound, b->in.bounds + o->bounds, leaves * sizeof *b->in.bounds);
+            memmove(b->in.boxes + box, b->in.boxes + t->first, boxes * sizeof *b->in.boxes);
+            for (s = 0; s < count; s++) {
+                o->order[s] -= back;
+                for (k = 0; k < 3; k++)
+                    if (b->in.sources[source + s].twin[k] != GXB_NONE) b->in.sources[source + s].twin[k] -= 3 * back;
+            }
+        }
+        o->source = source;
+        o->bounds = bound;
+        o->tree.first = box;
+        source += o->source_count;
+        bound += o->tree.size[0];
+        box += o->removed ? 1 : boxes;
+    }
+    b->in.source_count = source;
+    b->in.bound_count = bound;
+    b->in.box_count = box;
+    b->in.leaf_count = b->in.group_count = 0;
+    for (i = 0; i < b->in.operand_count; i++) gxbp_list_operand_box(b, i);
+}
+
+/* Forgets the points from count on. */
+static GXBP_COLD void gxbp_drop_points(gxb_boolean *b, uint32_t count) {
+    if (b->points.table_size > 0) gxbp_list_points(b, count);
+    b->points.vertex_count = b->store.point_count = count;
+}
+
+/* Keeps the input vertices of sources alone, in their order and each as it was when it was added. place: a word for
+   each point. Planes and exact numbers are made again when needed. */
+static GXBP_COLD void gxbp_keep_corners(gxb_boolean *b, uint32_t *place) {
+    uint32_t s, k, i, n = 0;
+    memset(place, 0, b->points.vertex_count * sizeof *place);
+    for (s = 0; s < b->in.source_count; s++) {
+        b->in.sources[s].plane = GXB_NONE;
+        for (k = 0; k < 3; k++) place[b->in.sources[s].point[k]] = 1;
+    }
+    for (i = 0; i < b->points.vertex_count; i++) {
+        gxbp_vertex *v = &b->points.vertices[n];
+        gxb_cpoint *p = &b->store.points[n];
+        uint32_t key[4];
+        gxb_ball ball;
+        if (!place[i]) continue;
+        memcpy(key, b->points.vertices[i].key, sizeof key);
+        ball = b->store.points[i].ball;
+        memset(v, 0, sizeof *v);
+        memset(p, 0, sizeof *p);
+        memcpy(v->key, key, sizeof key);
+        p->ball = ball;
+        p->parameter[0] = -1;
+        p->name = p->def[0] = v->same = place[i] = n++;
+    }
+    for (s = 0; s < b->in.source_count; s++)
+        for (k = 0; k < 3; k++) b->in.sources[s].point[k] = place[b->in.sources[s].point[k]];
+    gxbp_drop_numbers(&b->store, NULL);
+    b->store.plane_count = 0;
+    b->store.next_name = n;
+    gxbp_drop_points(b, n);
+    b->points.merged_count = b->points.projected_count = b->points.run_count = b->points.dropped_count = 0;
+    b->points.united = b->points.renamed = 0;
+    b->points.reach = 0;
+}
+
+/* Once a quarter of the arrangement is dead, the operands that are left are arranged anew. What has died since the last
+   time took a share of the time for that. Without memory for it, the arrangement stays. */
+static GXBP_COLD void gxbp_drop_dead(gxb_boolean *b) {
+    uint32_t *place;
+    if (!GXBP_HOLDS_MUCH_DEAD(b->crossings.dead, b->in.source_count + b->crossings.segment_count)) return;
+    place = (uint32_t *)gxbp_borrow(b, b->points.vertex_count * sizeof *place);
+    if (place == NULL) {
+        b->error = GX_OK;
+        b->budget.over_limit = 0;
+        return;
+    }
+    gxbp_close_ranks(b);
+    gxbp_keep_corners(b, place);
+    gxbp_forget_arrangement(b);
+    b->mesh.changed_count = 0;
+}
+
 /* >>api: the public functions of a Boolean ------------------------------------------------------------------------- */
 /* Each checks its arguments and calls the sections above in their order: operands when added; meet to result when
    evaluated; components and defects when first requested. After an error the Boolean holds its operands only. */
@@ -14973,12 +15156,6 @@ static gx_result gxbp_check_operand(const gxb_boolean *b, const gxb_operand *o, 
     return GX_OK;
 }
 
-/* Forgets the points from count on. */
-static GXBP_COLD void gxbp_drop_points(gxb_boolean *b, uint32_t count) {
-    if (b->points.table_size > 0) gxbp_list_points(b, count);
-    b->points.vertex_count = b->store.point_count = count;
-}
-
 GXFEM_API gx_result gxb_boolean_add(gxb_boolean *b, const gxb_operand *operand, gx_failure *failure) {
     uint32_t sources, subtriangles, points, boxes, bounds;
     size_t bad = SIZE_MAX;
@@ -15009,16 +15186,6 @@ GXFEM_API gx_result gxb_boolean_add(gxb_boolean *b, const gxb_operand *operand, 
                            : gxbp_fail(failure, result, gxbp_blamed(result, "vertices", "triangles"), bad);
 }
 
-/* Lists the subtriangles that may show something else without an operand: those that may meet its box. */
-static GXBP_COLD void gxbp_list_near(gxb_boolean *b, const gxbp_box *box) {
-    uint32_t i;
-    b->work.pending_count = 0;
-    gxbp_open_states(b, box);
-    if (b->error == GX_OK && GXBP_ROOM(b, mesh.changed, mesh.changed, b->work.pending_count))
-        for (i = 0; i < b->work.pending_count; i++) b->mesh.changed[b->mesh.changed_count++] = b->work.pending[i];
-    for (i = 0; i < b->work.pending_count; i++) b->mesh.subtriangles[b->work.pending[i]].state &= ~GXBP_OPEN;
-}
-
 GXFEM_API gx_result gxb_boolean_remove(gxb_boolean *b, uint32_t operand, gx_failure *failure) {
     gxbp_operand *o;
     uint32_t i;
@@ -15032,25 +15199,13 @@ GXFEM_API gx_result gxb_boolean_remove(gxb_boolean *b, uint32_t operand, gx_fail
     if (b->error != GX_OK) return gxbp_end(failure, b->error);
     /* without an intersection or the first operand, the result may differ anywhere */
     if (operand == b->in.first || o->operation == GXB_INTERSECTION) b->out.judged = 0;
-    o->removed = 1;
+    gxbp_count_dead(b, operand);
+    o->removed = 1 + b->crossings.arranged;
     while (b->in.first < b->in.operand_count && b->in.operands[b->in.first].removed) b->in.first++;
     gxbp_note_intersections(b, 0);
     for (i = 0; i < b->winding.state_count; i++) b->winding.states[i].known = 0;
     b->out.evaluated = 0;
     return gxbp_end(failure, GX_OK);
-}
-
-/* After an error: operands are as they were added, and nothing is arranged. Computed points stay known. */
-static GXBP_COLD void gxbp_forget_arrangement(gxb_boolean *b) {
-    uint32_t s;
-    b->mesh.subtriangle_count = b->mesh.link_count = b->crossings.segment_count = b->crossings.edge_count =
-        b->crossings.edge_point_count = b->crossings.hit_count = b->crossings.dirty_count = 0;
-    b->crossings.arranged = b->crossings.segment_mark = b->winding.stated = b->out.shown_count = 0;
-    b->kept.valid = 0;
-    for (s = 0; s < b->in.source_count; s++) {
-        b->in.sources[s].flags &= (uint32_t)GXBP_DEGENERATE;
-        gxbp_make_whole(b, s, b->mesh.subtriangle_count++);
-    }
 }
 
 /* Makes room for planes of a sixth of the new triangles. Unused room is never touched, and little is copied. */
@@ -15066,6 +15221,7 @@ static GXBP_APART void gxbp_arrange(gxb_boolean *b) {
     uint32_t i, j;
     gxbp_presize_planes(b);
     for (i = b->crossings.arranged; i < b->in.operand_count; i++) {
+        if (b->in.operands[i].source_count == 0) continue;
         gxbp_find_operands(b, gxbp_operand_box(b, i), 0, i + 1);
         for (j = 0; j < b->work.found_count && b->error == GX_OK; j++) gxbp_meet_operands(b, i, b->work.found[j]);
     }
@@ -15095,6 +15251,7 @@ GXFEM_API gx_result gxb_boolean_evaluate(gxb_boolean *b, gxb_boolean_result *res
     b->error = GX_OK;
     b->budget.over_limit = b->out.measured = b->out.examined = 0;
     b->out.mended_count = 0;
+    if (b->crossings.dead > 0) gxbp_drop_dead(b);
     gxbp_arrange(b);
     gxbp_find_states(b);
     gxbp_forget_answers(b);
@@ -15204,6 +15361,7 @@ GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *b, gxb_statistics 
 #undef GXBP_BARE
 #undef GXBP_ARENA
 #undef GXBP_PART
+#undef GXBP_HOLDS_MUCH_DEAD
 #undef GXBP_IS_SPARSE
 #undef GXBP_FAILS
 #undef GXBP_PLANS

@@ -258,8 +258,9 @@ typedef struct gxs_element {
     uint32_t group;
 } gxs_element;
 
-/* A copy that follows others: in every step its displacement changes by the weighted sum of the changes of theirs. A
- * held copy follows nothing. Masters follow nothing themselves. */
+/* A copy that follows others: in every step its displacement changes by the weighted sum of the changes of theirs. An
+ * affine copy (gxs_model.affine) follows their field: by the sum of w_k (a_k + A_k (X - X_k)), and its A by that of
+ * w_k A_k; the model then has positions. A held copy follows nothing. Masters follow nothing themselves. */
 typedef struct gxs_constraint {
     uint32_t copy;
     uint32_t master[4]; /* below copy_count, also where the weight is 0 */
@@ -289,8 +290,8 @@ typedef struct gxs_model {
      * each other below copy_count: the columns of A_i times affine_length. GXS_NOT_AFFINE for every other entry. Where
      * an element has an affine copy, u = sum N_i (a_i + A_i (x - X_i)), with A = 0 for its other copies. So a sheet
      * thinner than its elements bends as it should. A hidden vector is no element's copy, is held if its copy is, and
-     * follows and leads nothing; nor does an affine copy. A target of a held one is its A. Not with lumped_mass,
-     * GXS_MATRIX_ASSEMBLED and GXS_VOLUME_RATIO. */
+     * is in no constraint. A target of a held one is its A. Not with lumped_mass, GXS_MATRIX_ASSEMBLED and
+     * GXS_VOLUME_RATIO. */
     const uint32_t *affine;
     double affine_length; /* m, above 0 where copies are affine: about an element's size */
 } gxs_model;
@@ -843,6 +844,13 @@ extern "C" {
 #define GXSP_NESTED_COST 12
 #define GXSP_NESTED_FROM 0.8f
 #define GXSP_WIDEST      8
+
+/* Some fields have many descriptions by affine copies, and rounding alone would choose among them. Level 1 ties A to
+ * the gradient around it, by this share of the stiffness (>>nesting), and steps start from where it is so much closer
+ * to that (>>balance). With ties of 1e-3 clamped slabs take twice the iterations; with 1e-6 rounding moves A thirty
+ * times as far in slices that are pressed. */
+#define GXSP_TIE  1e-4
+#define GXSP_CALM 0.1
 
 /* An update keeps that lattice while its factor takes at most so many times as much. */
 #define GXSP_NESTED_SLACK 2
@@ -1541,10 +1549,11 @@ typedef struct gxsp_component {
     uint32_t state;     /* GXSP_HELD ... GXSP_TOUCHES. 0: loose, so that a translation of it meets no stiffness */
 } gxsp_component;
 
-/* A copy that follows others */
+/* A copy, or a hidden vector of one, that follows others. The first four masters are the constraint's, or hidden
+ * vectors of these; behind them, where an affine copy follows affine ones, the hidden vectors of these. */
 typedef struct gxsp_follower {
-    uint32_t copy, master[4];
-    double weight[4];
+    uint32_t copy, count, master[16];
+    double weight[16];
 } gxsp_follower;
 
 /* A copy with next to none of the mass around it, such as the far corner of an element's thin rest after a cut; and
@@ -4092,9 +4101,10 @@ static size_t gxsp_bad_constraint(const gxs_constraint *constraints, size_t coun
     return SIZE_MAX;
 }
 
-/* Room for so many followers, and for the copies that there are */
+/* Room for the followers of so many constraints, and for the copies that there are */
 static void gxsp_followers_room(gxsp_system *system, size_t count) {
     gxsp_model *model = &system->model;
+    if (system->affine.group_count > 0) count *= 4;
     if (count > model->follower_room) {
         model->follower_room = (uint32_t)gxsp_room(count);
         model->followers =
@@ -4102,6 +4112,42 @@ static void gxsp_followers_room(gxsp_system *system, size_t count) {
     }
     if (count > 0 && !model->follower)
         model->follower = (uint32_t *)gxsp_take(&system->pool, model->copy_room, sizeof(uint32_t));
+}
+
+/* Makes a vector follow those of a constraint, and returns the follower. */
+static gxsp_follower *gxsp_add_follower(gxsp_system *system, uint32_t vector, const gxs_constraint *constraint) {
+    gxsp_follower *follower = &system->model.followers[system->model.follower_count];
+    follower->copy = vector;
+    follower->count = 4;
+    memcpy(follower->master, constraint->master, sizeof constraint->master);
+    memcpy(follower->weight, constraint->weight, sizeof constraint->weight);
+    system->model.fixed[vector] = 0;
+    system->model.follower[vector] = system->model.follower_count++;
+    return follower;
+}
+
+/* An affine copy i follows the field of its masters k, a_i = sum w_k (a_k + A_k (X_i - X_k)), A_i = sum w_k A_k, so it
+ * bends as they do. follower: that of a_i, with sum w_k a_k */
+static void gxsp_follow_field(gxsp_system *system, gxsp_follower *follower, const gxs_constraint *constraint) {
+    const gxsp_affine *affine = &system->affine;
+    const double *x = system->model.positions + 3 * (size_t)constraint->copy;
+    gxs_constraint column = *constraint; /* of A_i */
+    uint32_t a, k;
+    for (k = 0; k < 4; k++)
+        for (a = 0; a < 3 && affine->place[constraint->master[k]] != GXSP_NONE; a++) {
+            const double *from = system->model.positions + 3 * (size_t)constraint->master[k];
+            if (!(fabs(constraint->weight[k]) > 0)) continue;
+            follower->master[follower->count] = affine->member[affine->place[constraint->master[k]] / 4][a + 1];
+            follower->weight[follower->count++] = constraint->weight[k] * (x[a] - from[a]) / affine->length;
+        }
+    for (a = 1; a < 4; a++) {
+        for (k = 0; k < 4; k++)
+            if (affine->place[constraint->master[k]] != GXSP_NONE)
+                column.master[k] = affine->member[affine->place[constraint->master[k]] / 4][a];
+            else
+                column.weight[k] = 0;
+        (void)gxsp_add_follower(system, affine->member[affine->place[constraint->copy] / 4][a], &column);
+    }
 }
 
 /* Sets the followers. None of them is fixed unless it is held. */
@@ -4112,22 +4158,20 @@ static void gxsp_set_followers(gxsp_system *system, const gxs_constraint *constr
     if (system->pool.failed || count == 0) return;
     memset(system->model.follower, 0xff, system->model.n * sizeof *system->model.follower);
     for (i = 0; i < count; i++) {
-        gxsp_follower *follower = &system->model.followers[system->model.follower_count];
+        gxsp_follower *follower;
         if (system->model.held[constraints[i].copy]) continue;
-        follower->copy = constraints[i].copy;
-        memcpy(follower->master, constraints[i].master, sizeof follower->master);
-        memcpy(follower->weight, constraints[i].weight, sizeof follower->weight);
-        system->model.fixed[follower->copy] = 0;
-        system->model.follower[follower->copy] = system->model.follower_count++;
+        follower = gxsp_add_follower(system, constraints[i].copy, &constraints[i]);
+        if (system->affine.place && system->affine.place[follower->copy] != GXSP_NONE)
+            gxsp_follow_field(system, follower, &constraints[i]);
     }
 }
 
 /* Joins copies that constraints couple. forest: n */
 static void gxsp_join_followers(const gxsp_system *system, uint32_t *forest) {
     size_t i;
-    int k;
+    uint32_t k;
     for (i = 0; i < system->model.follower_count; i++)
-        for (k = 0; k < 4; k++)
+        for (k = 0; k < system->model.followers[i].count; k++)
             if (fabs(system->model.followers[i].weight[k]) > 0)
                 gxsp_join(forest, system->model.followers[i].copy, system->model.followers[i].master[k]);
 }
@@ -4167,6 +4211,7 @@ static void gxsp_fill_components(gxsp_system *system) {
     }
     for (i = 0; i < system->model.follower_count; i++) {
         const double *w = system->model.followers[i].weight;
+        if (gxsp_is_hidden(system, system->model.followers[i].copy)) continue;
         if (fabs(w[0] + w[1] + w[2] + w[3] - 1) > 1e-12)
             system->model.components[system->model.component[system->model.followers[i].copy]].state |= GXSP_UNBALANCED;
     }
@@ -4238,7 +4283,7 @@ static int gxsp_corner_masters(const gxsp_system *system, uint32_t copy, uint32_
         return 1;
     }
     follower = &system->model.followers[system->model.follower[copy]];
-    for (k = 0; k < 4; k++)
+    for (k = 0; k < 4; k++) /* what follows as a field is no corner in a chunk */
         if (fabs(follower->weight[k]) > 0) {
             masters[count] = follower->master[k];
             weights[count++] = (float)follower->weight[k];
@@ -4262,7 +4307,7 @@ static void gxsp_extend(const gxsp_system *system, gxsp_vector4 *x) {
     for (i = 0; i < system->model.follower_count; i++) {
         const gxsp_follower *follower = &system->model.followers[i];
         gxsp_vector4 sum = {0, 0, 0, 0};
-        for (k = 0; k < 4; k++)
+        for (k = 0; k < follower->count; k++)
             for (c = 0; c < 3; c++) sum[c] += (float)follower->weight[k] * x[follower->master[k]][c];
         memcpy(x[follower->copy], sum, sizeof sum);
     }
@@ -4273,7 +4318,7 @@ static void gxsp_reduce(const gxsp_system *system, gxsp_vector4 *y) {
     uint32_t i, k, c;
     for (i = 0; i < system->model.follower_count; i++) {
         const gxsp_follower *follower = &system->model.followers[i];
-        for (k = 0; k < 4; k++)
+        for (k = 0; k < follower->count; k++)
             for (c = 0; c < 3; c++) y[follower->master[k]][c] += (float)follower->weight[k] * y[follower->copy][c];
         memset(y[follower->copy], 0, sizeof *y);
     }
@@ -4287,7 +4332,7 @@ static void gxsp_follow(const gxsp_system *system, const double *from, double *d
         double *to = displacement + 3 * (size_t)follower->copy;
         for (c = 0; c < 3; c++) {
             double sum = from ? from[3 * (size_t)follower->copy + c] : 0;
-            for (k = 0; k < 4; k++) {
+            for (k = 0; k < follower->count; k++) {
                 const size_t master = 3 * (size_t)follower->master[k] + c;
                 sum += follower->weight[k] * (displacement[master] - (from ? from[master] : 0));
             }
@@ -4301,7 +4346,7 @@ static void gxsp_reduce_residual(const gxsp_system *system, const uint8_t *still
     uint32_t i, k, c;
     for (i = 0; i < system->model.follower_count; i++) {
         const gxsp_follower *follower = &system->model.followers[i];
-        for (k = 0; k < 4; k++)
+        for (k = 0; k < follower->count; k++)
             for (c = 0; c < 3 && !still[follower->master[k]]; c++)
                 r[3 * (size_t)follower->master[k] + c] += follower->weight[k] * r[3 * (size_t)follower->copy + c];
         memset(r + 3 * (size_t)follower->copy, 0, 3 * sizeof *r);
@@ -4313,15 +4358,16 @@ static void gxsp_reduce_residual(const gxsp_system *system, const uint8_t *still
 static void gxsp_copy_direction(const gxsp_pass *pass, uint32_t copy, double *GXSP_RESTRICT to) {
     const gxsp_system *system = pass->system;
     const double *from = pass->from + 3 * (size_t)copy;
+    const gxsp_follower *follower;
     double factor = system->model.fixed[copy] ? 0 : pass->factor;
-    int k, c;
+    uint32_t k, c;
     if (!gxsp_follows(system, copy)) {
         to[0] = factor * from[0], to[1] = factor * from[1], to[2] = factor * from[2];
         return;
     }
     to[0] = to[1] = to[2] = 0;
-    for (k = 0; k < 4; k++) {
-        const gxsp_follower *follower = &system->model.followers[system->model.follower[copy]];
+    follower = &system->model.followers[system->model.follower[copy]];
+    for (k = 0; k < follower->count; k++) {
         from = pass->from + 3 * (size_t)follower->master[k];
         factor = system->model.fixed[follower->master[k]] ? 0 : pass->factor * follower->weight[k];
         for (c = 0; c < 3; c++) to[c] += factor * from[c];
@@ -5210,7 +5256,8 @@ static uint32_t gxsp_first_transfer(gxsp_system *system, float (*place)[3], cons
                             copies[system->multigrid.edges.ends[e] & 0xffff]);
     }
     for (e = 0; e < 4 * system->model.follower_count; e++)
-        if (fabs(system->model.followers[e / 4].weight[e % 4]) > 0)
+        if (!gxsp_is_hidden(system, system->model.followers[e / 4].copy) &&
+            fabs(system->model.followers[e / 4].weight[e % 4]) > 0)
             gxsp_join_nodes(transfer, system->model.followers[e / 4].copy,
                             system->model.followers[e / 4].master[e % 4]);
     gxsp_nested_join(system, transfer);
@@ -5935,11 +5982,9 @@ static void gxsp_affine_evaluate(gxsp_system *system, gxsp_pass *pass) {
                 gxsp_lead_of(system, affine->blocks[b].vector[0][l])->energies[k] += affine->blocks[b].energies[k][l];
 }
 
-/* A function of an element, given by its share of each vector, at a point: gradient in the frame of V, and value */
-static void gxsp_point_function(const gxsp_affine_block *block, int point, int l, const double share[16],
-                                double gradient[3], double *value) {
-    const gxsp_tangent *tangent = &block->tangent[point];
-    double w[4];
+/* A function of an element is given by its share of each vector. At a point its gradient is that of a linear function
+ * with the values w at the corners. */
+static void gxsp_point_corners(const gxsp_affine_block *block, int point, int l, const double share[16], double w[4]) {
     int k, j, a;
     for (j = 0; j < 4; j++) w[j] = share[j];
     for (k = 0; k < 6; k++) {
@@ -5950,10 +5995,35 @@ static void gxsp_point_function(const gxsp_affine_block *block, int point, int l
         w[j] += 4 * block->shape[point][i][l] * e;
         w[i] += 4 * block->shape[point][j][l] * e;
     }
+}
+
+/* A function of an element at a point: gradient in the frame of V, and value */
+static void gxsp_point_function(const gxsp_affine_block *block, int point, int l, const double share[16],
+                                double gradient[3], double *value) {
+    const gxsp_tangent *tangent = &block->tangent[point];
+    double w[4];
+    int j, a;
+    gxsp_point_corners(block, point, l, share, w);
     for (j = 0, *value = 0; j < 4; j++) *value += 0.5 * block->shape[point][j][l] * (share[j] + w[j]);
     for (a = 0; a < 3; a++) {
         gradient[a] = 0;
         for (j = 1; j < 4; j++) gradient[a] += (w[j] - w[0]) * (double)tangent->gradient[3 * (j - 1) + a][l];
+    }
+}
+
+/* The same function: slack[i] is its part of A_i less its gradient at the point, 1/m, where corner i is affine, else 0.
+ * length: see gxsp_affine */
+static void gxsp_point_slack(const gxsp_affine_block *block, double length, int point, int l, const double share[16],
+                             float slack[4][3]) {
+    double w[4];
+    int i, j, a;
+    gxsp_point_corners(block, point, l, share, w);
+    for (a = 0; a < 3; a++) {
+        double gradient = 0; /* in the material's frame */
+        for (j = 1; j < 4; j++) gradient += (w[j] - w[0]) * block->gradient[3 * (j - 1) + a][l];
+        for (i = 0; i < 4; i++)
+            slack[i][a] =
+                block->vector[4 + 3 * i][l] == GXSP_NONE ? 0 : (float)(share[4 + 3 * i + a] / length - gradient);
     }
 }
 
@@ -6004,6 +6074,19 @@ static void gxsp_point_couple(const double gradient[3], const double flux[27], d
         const double *p = flux + 9 * (k % 3) + 3 * (k / 3);
         to[k] += gradient[0] * p[0] + gradient[1] * p[1] + gradient[2] * p[2];
     }
+}
+
+/* Mean stiffness at a point, weight x N/m2: a ninth of the trace of the tangent */
+static double gxsp_point_modulus(const gxsp_affine_block *block, int point, int l) {
+    double sum[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0}, flux[27];
+    int a;
+    for (a = 0; a < 3; a++) {
+        double gradient[3] = {0, 0, 0};
+        gradient[a] = 1;
+        gxsp_point_flux(block, point, l, gradient, flux);
+        gxsp_point_couple(gradient, flux, sum);
+    }
+    return (sum[0] + sum[4] + sum[8]) / 9;
 }
 
 /* Diagonal blocks of one element's corner: of its copy, or of all parts of its group */
@@ -6095,7 +6178,10 @@ static void gxsp_affine_invert(const gxsp_system *system, uint32_t group) {
             a[i][j] = i / 3 <= j / 3 ? from[3 * (i % 3) + j % 3] : from[3 * (j % 3) + i % 3];
         }
     for (i = 0; i < 12; i++)
-        scale[i] = !system->state.still[affine->member[group][i / 3]] && a[i][i] > GXSP_TINY ? 1 / sqrt(a[i][i]) : 0;
+        scale[i] = !system->state.still[affine->member[group][i / 3]] &&
+                           !gxsp_follows(system, affine->member[group][i / 3]) && a[i][i] > GXSP_TINY
+                     ? 1 / sqrt(a[i][i])
+                     : 0;
     memset(w, 0, sizeof w);
     for (i = 0; i < 12; i++) { /* Cholesky of the block with a diagonal of 1 */
         for (j = 0; j <= i; j++) {
@@ -6131,7 +6217,9 @@ static void gxsp_affine_diagonal(gxsp_system *system, double rate) {
     for (group = 0; group < affine->group_count; group++) {
         for (p = 0; p < 4; p++)
             for (k = 0; k < 6; k++)
-                affine->own[affine->member[group][p]][k] = affine->full[group][gxsp_packed_mass[p][p]][packed[k]];
+                affine->own[affine->member[group][p]][k] = gxsp_follows(system, affine->member[group][p])
+                                                             ? 0
+                                                             : affine->full[group][gxsp_packed_mass[p][p]][packed[k]];
         gxsp_affine_invert(system, group);
     }
 }
@@ -8019,13 +8107,17 @@ static void gxsp_coarse_term(gxsp_system *system, const gxsp_term *term) {
 /* In: tangents of elements with affine copies, level 1's matrix from chunks. Out: the factor of their sum, in double
  * precision: bending is softer than the rounding and the shift of single precision. */
 
-/* Adds an element's Hessian between its coarse functions. rate: times scale; dirty: see gxsp_nested_pattern */
+/* Adds an element's Hessian between its coarse functions. Some fields have many descriptions by affine copies: what is
+ * between two of them moves nothing, and only rounding has a stiffness there. So each A_i is tied to the gradient
+ * around it by a spring of GXSP_TIE of the element's stiffness. Where a sheet bends, both differ by the bend over an
+ * element, so the matrix gets stiffer by about GXSP_TIE (h / thickness)^2. rate: times scale; dirty: see
+ * gxsp_nested_pattern */
 static void gxsp_nested_element(gxsp_system *system, const gxsp_affine_block *block, int l, double rate,
                                 const uint8_t *dirty) {
     const gxsp_level *level = &system->multigrid.levels[1];
     uint32_t node[64], parents[16], count = 0, c, d, k, n;
     double share[64][16], gradient[64][3], value[64], flux[27];
-    float weights[16];
+    float weights[16], slack[64][4][3];
     int p, m;
     for (k = 0; k < 16; k++) {
         n = block->vector[k][l] == GXSP_NONE ? 0 : gxsp_nested_parents(system, block->vector[k][l], parents, weights);
@@ -8039,17 +8131,20 @@ static void gxsp_nested_element(gxsp_system *system, const gxsp_affine_block *bl
         }
     }
     for (p = 0; p < 4; p++) {
+        const double tie = 0.25 * GXSP_TIE * gxsp_point_modulus(block, p, l);
         for (c = 0; c < count; c++) gxsp_point_function(block, p, l, share[c], gradient[c], &value[c]);
+        for (c = 0; c < count; c++) gxsp_point_slack(block, system->affine.length, p, l, share[c], slack[c]);
         for (d = 0; d < count; d++) {
             gxsp_point_flux(block, p, l, gradient[d], flux);
             for (c = 0; c < count; c++) {
-                double to[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0}, *entry;
+                double to[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0}, *entry,
+                       tied = rate * block->rest.mass[l] * value[c] * value[d];
                 if (node[c] > node[d] || (dirty && !dirty[node[c]] && !dirty[node[d]])) continue;
                 entry = system->affine.block + 9 * (size_t)gxsp_find_entry(level, node[c], node[d]);
+                for (m = 0; m < 12; m++)
+                    tied += tie * ((double)slack[c][m / 3][m % 3] * (double)slack[d][m / 3][m % 3]);
                 gxsp_point_couple(gradient[c], flux, to);
-                to[0] += rate * block->rest.mass[l] * value[c] * value[d];
-                to[4] += rate * block->rest.mass[l] * value[c] * value[d];
-                to[8] += rate * block->rest.mass[l] * value[c] * value[d];
+                to[0] += tied, to[4] += tied, to[8] += tied;
                 for (m = 0; m < 9; m++) entry[3 * (m % 3) + m / 3] += to[m];
             }
         }
@@ -8102,10 +8197,8 @@ static double gxsp_double_dot(const double *a, const double *b, size_t count) {
     return (sum[0] + sum[2]) + (sum[1] + sum[3]);
 }
 
-/* The sum of both matrices in the factor's envelope, then Cholesky; the diagonal is inverted. Functions that others
- * make up have pivots of rounding. 2e-8 of the diagonal is added, which hardly stiffens what bends. With 1e-12 an
- * answer had multiples of them, and the rounding of their products became a force: sheets that nothing holds took
- * hundreds of iterations in place of six, under pairs even with 4e-9. place: n, scratch. 0: a number overflowed. */
+/* The sum of both matrices in the factor's envelope, then Cholesky; the diagonal, with 1e-12 more, is inverted. place:
+ * n, scratch. 0: a number overflowed. */
 static int gxsp_nested_factor(gxsp_system *system, uint32_t *place) {
     const gxsp_factor *factor = &system->multigrid.factor;
     const gxsp_level *level = &system->multigrid.levels[1];
@@ -8129,7 +8222,7 @@ static int gxsp_nested_factor(gxsp_system *system, uint32_t *place) {
             const double *left = gxsp_nested_row(system, j);
             row[j] = (row[j] - gxsp_double_dot(row + from, left + from, j - from)) * left[j];
         }
-        row[i] = own * (1 + 2e-8) - gxsp_double_dot(row + first, row + first, i - first);
+        row[i] = own * (1 + 1e-12) - gxsp_double_dot(row + first, row + first, i - first);
         row[i] = own < GXSP_TINY ? 0 : row[i] > 1e-10 * own ? 1 / sqrt(row[i]) : 0;
         if (!gxsp_finite(row[i])) return 0;
     }
@@ -9326,10 +9419,16 @@ static void gxsp_move_copies(gxsp_renewal *update) {
 /* Is a follower the same as before, but for the numbers of copies? */
 static int gxsp_follows_alike(const gxsp_renewal *update, const gxsp_follower *follower,
                               const gxs_constraint *constraint) {
+    const uint32_t *affine = update->change->affine;
+    uint32_t count = 4;
     int k;
-    for (k = 0; k < 4; k++)
+    for (k = 0; k < 4; k++) {
         if (update->successor[follower->master[k]] != constraint->master[k]) return 0;
-    return memcmp(follower->weight, constraint->weight, sizeof follower->weight) == 0;
+        if (affine && affine[constraint->copy] != GXS_NOT_AFFINE && affine[constraint->master[k]] != GXS_NOT_AFFINE &&
+            fabs(constraint->weight[k]) > 0)
+            count += 3;
+    }
+    return follower->count == count && memcmp(follower->weight, constraint->weight, sizeof constraint->weight) == 0;
 }
 
 /* Touches copies that begin or cease to follow others, and their masters, and marks the coarse nodes of both as
@@ -9347,6 +9446,7 @@ static void gxsp_touch_followers(gxsp_renewal *update) {
     }
     for (i = 0; i < system->model.follower_count; i++) { /* followers before the update */
         const uint32_t copy = system->model.followers[i].copy;
+        if (gxsp_is_hidden(system, copy)) continue; /* its copy is touched */
         if (update->successor[copy] != GXSP_NONE && update->alike[update->successor[copy]]) continue;
         for (k = -1; k < 4; k++) {
             const uint32_t other = k < 0 ? copy : system->model.followers[i].master[k];
@@ -9472,7 +9572,8 @@ static void gxsp_join_dirty(gxsp_renewal *update, uint32_t *forest) {
                               copies[system->multigrid.edges.ends[e] & 0xffff], forest);
     }
     for (e = 0; e < 4 * system->model.follower_count; e++)
-        if (fabs(system->model.followers[e / 4].weight[e % 4]) > 0)
+        if (!gxsp_is_hidden(system, system->model.followers[e / 4].copy) &&
+            fabs(system->model.followers[e / 4].weight[e % 4]) > 0)
             gxsp_join_parents(update, system->model.followers[e / 4].copy, system->model.followers[e / 4].master[e % 4],
                               forest);
     for (c = 0; c < system->affine.block_count; c++)
@@ -11088,6 +11189,74 @@ static void gxsp_lead_lights(const gxsp_problem *problem) {
     }
 }
 
+/* An element's mean gradient of the way from one displacement to another, m/m: of[c][a] */
+static void gxsp_affine_gradient(const gxsp_affine_block *block, int l, const double *from, const double *to,
+                                 double of[3][3]) {
+    double w[4][3], mean[4], way[2];
+    int i, j, k, a, c;
+    for (i = 0; i < 4; i++) {
+        mean[i] = block->shape[0][i][l] + block->shape[1][i][l] + block->shape[2][i][l] + block->shape[3][i][l];
+        for (c = 0; c < 3; c++) {
+            const size_t at = 3 * (size_t)block->vector[i][l] + (size_t)c;
+            w[i][c] = to[at] - from[at];
+        }
+    }
+    for (k = 0; k < 6; k++)
+        for (a = 0; a < 3; a++)
+            for (c = 0; c < 3; c++) {
+                double e;
+                for (i = 0; i < 2; i++) {
+                    const uint32_t vector = block->vector[4 + 3 * gxsp_edge_ends[k][i] + a][l];
+                    const size_t at = 3 * (size_t)vector + (size_t)c;
+                    way[i] = vector == GXSP_NONE ? 0 : to[at] - from[at];
+                }
+                e = (way[0] - way[1]) * gxsp_affine_edge(block, k, a, l);
+                w[gxsp_edge_ends[k][1]][c] += mean[gxsp_edge_ends[k][0]] * e;
+                w[gxsp_edge_ends[k][0]][c] += mean[gxsp_edge_ends[k][1]] * e;
+            }
+    for (c = 0; c < 3; c++)
+        for (a = 0; a < 3; a++)
+            for (of[c][a] = 0, j = 1; j < 4; j++) of[c][a] += (w[j][c] - w[0][c]) * block->gradient[3 * (j - 1) + a][l];
+}
+
+/* Some fields have many descriptions by affine copies: a difference of two moves nothing, has no force and no inertia,
+ * and would go on for ever. So the way from the step's start of each A goes a part nearer to the gradient of the
+ * field's way around its copy. What moves nothing has no gradient, and loses that part in every step; in what turns or
+ * stretches evenly both are equal; what bends differs a little in the start only. */
+static void gxsp_calm_affine(const gxsp_problem *problem) {
+    gxsp_system *system = problem->system;
+    const gxsp_affine *affine = &system->affine;
+    const double *given = problem->given;
+    double *start = system->vectors.current;
+    uint32_t b, g;
+    int l, k, a, c;
+    if (affine->count == 0) return;
+    memset(affine->sum, 0, system->model.n * sizeof *affine->sum);
+    for (b = 0; b < affine->block_count; b++)
+        for (l = 0; l < GXSP_LANES && !affine->blocks[b].still; l++) {
+            const gxsp_affine_block *block = &affine->blocks[b];
+            const double weight = block->rest.weight[l];
+            double gradient[3][3];
+            if (!(weight > 0)) continue;
+            gxsp_affine_gradient(block, l, given, start, gradient);
+            for (k = 0; k < 4; k++) {
+                if (block->vector[4 + 3 * k][l] == GXSP_NONE) continue;
+                affine->sum[block->vector[k][l]][0] += weight;
+                for (a = 0; a < 3; a++)
+                    for (c = 0; c < 3; c++) affine->sum[block->vector[4 + 3 * k + a][l]][c] += weight * gradient[c][a];
+            }
+        }
+    for (g = 0; g < affine->group_count; g++) {
+        const double weight = affine->sum[affine->member[g][0]][0];
+        for (a = 1; a < 4 && weight > 0 && !system->state.still[affine->member[g][0]]; a++)
+            for (c = 0; c < 3; c++) {
+                const uint32_t vector = affine->member[g][a];
+                const size_t at = 3 * (size_t)vector + (size_t)c;
+                start[at] -= GXSP_CALM * (start[at] - given[at] - affine->length / weight * affine->sum[vector][c]);
+            }
+    }
+}
+
 /* Starts Newton's method at base, or where inertia leads; each loose component is translated so that its momentum
  * balances. The iteration cannot change momentum: elastic forces have none, and directions balance it. */
 static int gxsp_start(gxsp_problem *problem, int led) {
@@ -11097,6 +11266,7 @@ static int gxsp_start(gxsp_problem *problem, int led) {
     for (i = 0; i < system->model.n && led; i++)
         if (!system->state.still[i])
             memcpy(system->vectors.current + 3 * i, system->vectors.target + 3 * i, 3 * sizeof(double));
+    if (led) gxsp_calm_affine(problem);
     if (led) gxsp_lead_lights(problem);
     gxsp_follow(system, problem->given, system->vectors.current);
     gxsp_untouch_components(system);
@@ -12652,9 +12822,11 @@ static gx_result gxsp_check_affine(const gxs_model *model, const gxs_solver *sol
     if (solver->matrix == GXS_MATRIX_ASSEMBLED) return gxsp_refuse(failure, "matrix");
     if (solver->preconditioner == GXS_VOLUME_RATIO) return gxsp_refuse(failure, "preconditioner");
     for (i = 0; i < model->constraint_count; i++)
-        for (k = 0; k < 5; k++)
-            if (owned[k < 4 ? model->constraints[i].master[k] : model->constraints[i].copy])
-                return gxsp_fail(failure, GX_ERROR_ARGUMENT, "constraints", i);
+        for (k = 0; k < 5; k++) {
+            const uint8_t kind = owned[k < 4 ? model->constraints[i].master[k] : model->constraints[i].copy];
+            if (kind == 1 || (kind == 2 && k == 4 && !model->positions))
+                return gxsp_fail(failure, GX_ERROR_ARGUMENT, kind == 1 ? "constraints" : "positions", i);
+        }
     for (i = 0; i < model->element_count; i++) {
         double edge[3][3];
         for (k = 0; k < 4; k++)
@@ -12885,6 +13057,7 @@ static gx_result gxsp_check_changed_affine(const gxs_solver *solver, const gxs_c
     if (!owned) return GX_OK; /* without memory the caller fails */
     memset(&model, 0, sizeof model);
     model.copy_count = change->copy_count;
+    model.positions = solver->system->model.positions;
     model.held = change->held;
     model.affine = change->affine;
     model.affine_length = solver->system->affine.place ? solver->system->affine.length : 1;
@@ -13765,6 +13938,8 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_SETTLED
 #undef GXSP_SHEETS_MOST
 #undef GXSP_WIDEST
+#undef GXSP_TIE
+#undef GXSP_CALM
 #undef GXSP_SHIFT
 #undef GXSP_STIFFNESS
 #undef GXSP_TINY

@@ -4,7 +4,11 @@
    reported ranges change stays equal to the retained result. Operands are those of the fuzzer, on one lattice, with
    repetitions. Some steps run out of memory, are read off coarsely, or in another precision. Operands are taken out,
    too: the Boolean of those that are left, made anew, has the same components, and the same corners once coplanar
-   faces are merged. */
+   faces are merged. Those that are left are arranged anew in each such step, in some of them, or never. */
+#include <stdint.h>
+
+static uint32_t dead_share = 4; /* one such part dead: what is left is arranged anew */
+#define GXBP_HOLDS_MUCH_DEAD(dead, all) ((dead) > (all) / dead_share)
 #define GXFEM_BOOLEAN_IMPLEMENTATION
 #include "../gxfem_boolean.h"
 #include "fuzz_cases.h"
@@ -375,6 +379,7 @@ static size_t count_left(const chain *c, size_t step) {
 }
 
 static void check_chain_of(uint64_t seed, int removes) {
+    static const uint32_t shares[] = {4, 1, UINT32_MAX};
     static chain c;
     memory m = plenty();
     copy mirror;
@@ -382,6 +387,7 @@ static void check_chain_of(uint64_t seed, int removes) {
     size_t step, added = 0;
     make_chain(&c, seed);
     c.removes = removes;
+    dead_share = shares[seed / 2 % 3];
     memset(&mirror, 0, sizeof mirror);
     retained = start(&c, 1, &m);
     anew = start(&c, 0, NULL);
@@ -517,6 +523,67 @@ START_TEST(all_operands_are_taken_out) {
 }
 END_TEST
 
+/* A box with these corners, moved along x; skew: by how much its corners are off, so that nothing is aligned */
+static gxb_operand box_of(double x[8][3], const double low[3], const double high[3], double skew, double along) {
+    static const uint32_t faces[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                                          {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+    gxb_operand o;
+    int i, k;
+    memset(&o, 0, sizeof o);
+    for (i = 0; i < 8; i++)
+        for (k = 0; k < 3; k++)
+            x[i][k] = (i >> k & 1 ? high : low)[k] + (i * (k + 2) % 5) * skew + (k == 0 ? along : 0);
+    o.vertices = &x[0][0];
+    o.vertex_count = 8;
+    o.triangles = &faces[0][0];
+    o.triangle_count = 12;
+    return o;
+}
+
+/* A tool is dragged through a block, in steps of a 32nd of its length: each time it is taken out and added again. What
+   it leaves has one volume in all places. A sheet beside it stays, too. The Boolean does not grow with the places where
+   the tool was. */
+START_TEST(a_dragged_tool_leaves_nothing_behind) {
+    static const double low[3] = {0, 0, 0}, high[3] = {4, 1, 1};
+    static const double tool_low[3] = {0.25, 0.25, 0.5}, tool_high[3] = {0.75, 0.75, 1.5};
+    double block[8][3], x[8][3], volume = 0;
+    uint32_t place, first = 0;
+    chain c;
+    gxb_boolean *b;
+    gxb_operand o = box_of(block, low, high, 0, 0);
+    dead_share = 4;
+    memset(&c, 0, sizeof c);
+    b = start(&c, _i / 2, NULL);
+    o.operation = GXB_UNION;
+    ck_assert_int_eq(gxb_boolean_add(b, &o, NULL), GX_OK);
+    o.operation = GXB_SPLIT;
+    o.vertex_count = 3;
+    o.triangle_count = 1;
+    for (place = 0; place < 3; place++) block[place][1] += 2;
+    ck_assert_int_eq(gxb_boolean_add(b, &o, NULL), GX_OK);
+    for (place = 0; place < 180 / FEWER; place++) {
+        gxb_boolean_result r;
+        gxb_components parts;
+        o = box_of(x, tool_low, tool_high, _i % 2 == 0 ? 0 : 0.01, place / 64.0);
+        o.operation = GXB_DIFFERENCE;
+        if (place > 0) ck_assert_int_eq(gxb_boolean_remove(b, place + 1, NULL), GX_OK);
+        ck_assert_int_eq(gxb_boolean_add(b, &o, NULL), GX_OK);
+        ck_assert_int_eq(gxb_boolean_evaluate(b, &r, NULL), GX_OK);
+        ck_assert_int_eq(gxb_boolean_components(b, &parts, NULL), GX_OK);
+        if (place == 0) {
+            volume = _i % 2 == 0 ? 3.875 : parts.total_volume;
+            first = b->in.source_count + b->crossings.segment_count;
+        }
+        ck_assert_uint_eq(parts.count, 1);
+        ck_assert_int_eq(parts.euler[0], 2);
+        ck_assert(fabs(parts.total_volume - volume) < 1e-14);
+        ck_assert_uint_le(b->in.source_count + b->crossings.segment_count, 3 * first);
+        ck_assert_uint_le(b->points.vertex_count, 3 * first);
+    }
+    gxb_boolean_destroy(b);
+}
+END_TEST
+
 /* test_chains [FIRST END]: the chains of these seeds */
 int main(int argc, char **argv) {
     Suite *suite = suite_create("chains");
@@ -532,6 +599,7 @@ int main(int argc, char **argv) {
         tcase_add_loop_test(tests, operands_are_taken_out, 0, 10);
         tcase_add_test(tests, chains_that_failed);
         tcase_add_loop_test(tests, all_operands_are_taken_out, 0, 2);
+        tcase_add_loop_test(tests, a_dragged_tool_leaves_nothing_behind, 0, 4);
         tcase_add_loop_test(anew, all_is_new_that_is_made_from_nothing, 0, 8);
     }
     suite_add_tcase(suite, tests);
