@@ -12883,10 +12883,11 @@ static void gxp_join_crowd(const gxp_touch *t, const gxp_touch_surface *s, doubl
     gxp_add_to_bounds(x, &crowd->own.from);
     gxp_add_to_bounds(end, &crowd->own.to);
     gxp_add_to_bounds(x + 6, &crowd->own.normals);
-    crowd->size = fmax(crowd->size, v->size);
-    crowd->slack = fmax(crowd->slack, gxp_touch_slack(t, v) * more);
-    crowd->ahead = fmax(crowd->ahead, gxp_touch_ahead(v) * more);
-    crowd->beside = fmax(crowd->beside, GXP_TOUCH_BESIDE * v->size + 1e-9 * v->size);
+    if (!(v->size > crowd->size)) return; /* all reaches grow with the size */
+    crowd->size = v->size;
+    crowd->slack = gxp_touch_slack(t, v) * more;
+    crowd->ahead = gxp_touch_ahead(v) * more;
+    crowd->beside = GXP_TOUCH_BESIDE * v->size + 1e-9 * v->size;
 }
 
 /* Finds the boxes in and below those of `from`, or below the root, that may hold what a crowd meets: those of a level
@@ -12926,7 +12927,8 @@ static gxp_touch_pair gxp_no_pair(uint32_t sample) {
 
 /* How far from a sample a better facet than that of its pair may be at most, m */
 static double gxp_pair_slack(const gxp_touch_surface *s, const gxp_touch_pair *best, double slack) {
-    return fmin(sqrt(best->score) + 1e-9 * s->vertices[best->sample].size, slack);
+    const double near = sqrt(best->score) + 1e-9 * s->vertices[best->sample].size;
+    return near < slack ? near : slack;
 }
 
 /* The boxes of touch.near from the step's start to its end, as a crowd sees them that moves by `shift` within the step:
