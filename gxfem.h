@@ -260,7 +260,7 @@ typedef struct gx_body_desc {
     gx_allocator allocator;      /* zero: malloc, free, realloc */
     double (*clock)(void *user); /* seconds, for the reports' timings and the steps' budgets; NULL: timings are 0 */
     void *clock_user;
-    gx_jobs jobs; /* the host's threads, for the steps; zero: none */
+    gx_jobs jobs; /* the host's threads, for steps and large cuts; zero: none */
     /* NULL: the mesh above. Else positions, elements, element_materials and texture are NULL, their counts 0, and the
        body is as a cut has left it: gx_view.epoch is not 0, and surface n of the shape is surface n of the body's cuts,
        for the skin and its texture. */
@@ -1680,6 +1680,7 @@ typedef struct gxp_boundary {
 typedef struct gxp_scratch {
     uint32_t stamp;       /* of the last walk through cells or leaves */
     uint32_t scope_stamp; /* of the cells that a surface of the cut may touch */
+    uint32_t first_point; /* that the cut has made */
     /* a cut, from step to step */
     gxp_words removed;    /* leaves that solids remove */
     gxp_keys removed_of;  /* element, leaf of it that solids remove */
@@ -1693,6 +1694,7 @@ typedef struct gxp_scratch {
     /* >>arrange */
     gxp_keys order;          /* place in the order of insertion, triangle */
     gxp_words near_elements; /* that a triangle may meet */
+    gxp_words batch;         /* the same of many triangles, see gxp_batch */
     /* >>pinches */
     gxp_words joint_leaves; /* around a node, or of an element */
     gxp_words joint_edges;  /* parts of edges in which these meet: joints 0, 1, ...; then a node is one */
@@ -1989,7 +1991,7 @@ static const gxp_column gxp_lists[] = {
     GXP_WORDS(scratch.new_cells),
     GXP_KEYS(scratch.links), GXP_KEYS(scratch.glue), GXP_KEYS(scratch.seams), GXP_WORDS(scratch.cluster),
     GXP_WORDS(scratch.link_first), GXP_WORDS(scratch.narrow), GXP_WORDS(scratch.dead),
-    GXP_KEYS(scratch.order), GXP_WORDS(scratch.near_elements),
+    GXP_KEYS(scratch.order), GXP_WORDS(scratch.near_elements), GXP_WORDS(scratch.batch),
     GXP_WORDS(scratch.joint_leaves), GXP_WORDS(scratch.joint_edges), GXP_WORDS(scratch.joint_walls),
     GXP_WORDS(scratch.leaf_joints), GXP_KEYS(scratch.joint_cells), GXP_KEYS(scratch.cell_joints),
     GXP_WORDS(scratch.seed_leaves), GXP_WORDS(scratch.flooded), GXP_WORDS(scratch.seeded), GXP_WORDS(scratch.wound),
@@ -2762,35 +2764,48 @@ static int gxp_triangle_near_element(const gx_body *body, const gxp_search *s, u
     return gxp_triangle_near_tet(s, x);
 }
 
-/* Finds the elements that the triangle may meet. Elements in boxes that it may meet are listed first, so that their
-   data can be prefetched before each is examined. */
-static gx_result gxp_find_elements(gx_body *body, const double *const p[3], gxp_words *found) {
+/* Lists the elements that the triangle may meet, at most room, and returns their number; GXP_NONE: room is too small.
+   Elements in boxes that it may meet are listed first, so that their data can be prefetched before each is examined.
+   Changes nothing else, so threads may do it side by side. */
+static uint32_t gxp_search_elements(const gx_body *body, const double *const p[3], uint32_t *found, uint32_t room) {
     const uint32_t *elements = gxb_complex_element_nodes(body->complex, 0);
     gxp_search search;
-    uint32_t stack[128], depth = 0, count = 0, i, k;
-    gx_result result = GX_OK;
-    found->count = 0;
+    uint32_t stack[128], depth = 0, listed = 0, count = 0, i, k;
     gxp_search_init(&search, p, ldexp(1, gxb_complex_shift(body->complex)), &body->mesh.boxes[0]);
     stack[depth++] = 0;
-    while (depth > 0 && result == GX_OK) {
+    while (depth > 0) {
         const gxp_box *box = &body->mesh.boxes[stack[--depth]];
         if (!gxp_triangle_near_box(&search, box)) continue;
         if (box->count == 0) {
             stack[depth++] = box->first + 1;
             stack[depth++] = box->first;
-        } else
-            result = gxp_words_room(body, found, box->count);
-        for (i = 0; i < box->count && result == GX_OK; i++) {
-            const uint32_t element = found->data[found->count++] = body->mesh.box_elements[box->first + i];
+        } else if (box->count > room - listed)
+            return GXP_NONE;
+        for (i = 0; i < box->count; i++) {
+            const uint32_t element = found[listed++] = body->mesh.box_elements[box->first + i];
             GXP_PREFETCH(elements + 4 * (size_t)element);
         }
     }
-    for (i = 0; i < found->count && result == GX_OK; i++) {
-        for (k = 0; k < 4 && i + 4 < found->count; k++)
-            GXP_PREFETCH(body->mesh.positions + 3 * (size_t)elements[4 * (size_t)found->data[i + 4] + k]);
-        if (!gxp_triangle_near_element(body, &search, found->data[i])) continue;
-        gxb_complex_prefetch_element(body->complex, found->data[i]);
-        found->data[count++] = found->data[i];
+    for (i = 0; i < listed; i++) {
+        for (k = 0; k < 4 && i + 4 < listed; k++)
+            GXP_PREFETCH(body->mesh.positions + 3 * (size_t)elements[4 * (size_t)found[i + 4] + k]);
+        if (!gxp_triangle_near_element(body, &search, found[i])) continue;
+        gxb_complex_prefetch_element(body->complex, found[i]);
+        found[count++] = found[i];
+    }
+    return count;
+}
+
+/* Finds the elements that the triangle may meet. */
+static gx_result gxp_find_elements(gx_body *body, const double *const p[3], gxp_words *found) {
+    gx_result result = GX_OK;
+    uint32_t count;
+    for (;;) {
+        found->count = 0;
+        count = gxp_search_elements(body, p, found->data, found->capacity);
+        if (count != GXP_NONE || result != GX_OK) break;
+        result = gxp_words_room(body, found, (size_t)found->capacity + 64);
+        if (result != GX_OK) return result;
     }
     found->count = count;
     return result;
@@ -3806,16 +3821,99 @@ static gx_result gxp_prepare_triangle(gxp_cut *cut, gxp_surface *s, uint32_t ind
     return gxb_complex_add_plane(body->complex, t);
 }
 
-/* Inserts the triangle into every element that it meets. */
+static void gxp_corners_of(const gx_surface *given, uint32_t index, const double *p[3]) {
+    uint32_t k;
+    for (k = 0; k < 3; k++) p[k] = given->vertices + 3 * (size_t)given->triangles[3 * (size_t)index + k];
+}
+
+/* --- searching on the host's threads: the triangles of a batch, by parts --- */
+
+#ifndef GXP_SEARCH_PART
+#define GXP_SEARCH_PART 64u /* triangles of a part: some ten microseconds; fewer in tests/test_threads_cuts.c */
+#endif
+#define GXP_SEARCH_PARTS 64u                     /* of a batch */
+#define GXP_SEARCH_ROOM  (16u * GXP_SEARCH_PART) /* elements that a part can list */
+
+typedef struct gxp_batch {
+    const gx_body *body;
+    const gx_surface *given;
+    const uint64_t *order; /* its triangles, see gxp_insert_surface */
+    uint32_t count;
+    uint32_t *found;  /* parts x GXP_SEARCH_ROOM: the elements of a part's triangles, one after the other */
+    uint32_t *counts; /* of each triangle; GXP_NONE: the part had no room left */
+} gxp_batch;
+
+static void gxp_search_part(void *context, size_t part) {
+    const gxp_batch *b = (const gxp_batch *)context;
+    uint32_t i = (uint32_t)part * GXP_SEARCH_PART, listed = 0;
+    const uint32_t end = b->count - i < GXP_SEARCH_PART ? b->count : i + GXP_SEARCH_PART;
+    for (; i < end; i++) {
+        const double *p[3];
+        gxp_corners_of(b->given, GXP_SECOND(b->order[i]), p);
+        b->counts[i] =
+            gxp_search_elements(b->body, p, b->found + part * GXP_SEARCH_ROOM + listed, GXP_SEARCH_ROOM - listed);
+        if (b->counts[i] != GXP_NONE) listed += b->counts[i];
+    }
+}
+
+/* Searches the elements of the triangles from first on in scratch.order, as many as a batch holds. *end: the first one
+   that it does not; it stays first if there are no threads, or few triangles. */
+static gx_result gxp_search_batch(gx_body *body, const gx_surface *given, uint32_t first, uint32_t *end) {
+    const gx_jobs *jobs = &body->config.jobs;
+    gxp_scratch *scratch = &body->scratch;
+    const uint32_t left = scratch->order.count - first, most = GXP_SEARCH_PARTS * GXP_SEARCH_PART;
+    gxp_batch batch;
+    gx_result result;
+    *end = first;
+    if (jobs->parallel_for == NULL || left < 4 * GXP_SEARCH_PART) return GX_OK;
+    scratch->batch.count = 0;
+    result = gxp_words_room(body, &scratch->batch, (size_t)GXP_SEARCH_PARTS * GXP_SEARCH_ROOM + most);
+    if (result != GX_OK) return result;
+    batch.body = body;
+    batch.given = given;
+    batch.order = scratch->order.data + first;
+    batch.count = left < most ? left : most;
+    batch.counts = scratch->batch.data;
+    batch.found = scratch->batch.data + most;
+    jobs->parallel_for(jobs->user, (batch.count + GXP_SEARCH_PART - 1) / GXP_SEARCH_PART, gxp_search_part, &batch);
+    *end = first + batch.count;
+    return GX_OK;
+}
+
+/* Lists in scratch.near_elements the elements of the triangle i of scratch.order. The batch of those from first to
+   before end has them, if i is one of these; *place: where they are. Elements of the next one are prefetched. */
+static gx_result gxp_take_near(gx_body *body, const gx_surface *given, uint32_t i, uint32_t first, uint32_t end,
+                               uint32_t *place) {
+    gxp_scratch *scratch = &body->scratch;
+    gxp_words *near = &scratch->near_elements;
+    const uint32_t n = i - first, *counts = scratch->batch.data;
+    const uint32_t *found = counts + GXP_SEARCH_PARTS * GXP_SEARCH_PART;
+    const double *p[3];
+    uint32_t k;
+    gx_result result;
+    if (n % GXP_SEARCH_PART == 0) *place = n / GXP_SEARCH_PART * GXP_SEARCH_ROOM;
+    if (i >= end || counts[n] == GXP_NONE) {
+        gxp_corners_of(given, GXP_SECOND(scratch->order.data[i]), p);
+        return gxp_find_elements(body, p, near);
+    }
+    near->count = 0;
+    result = gxp_words_room(body, near, counts[n]);
+    if (result != GX_OK || counts[n] == 0) return result;
+    memcpy(near->data, found + *place, counts[n] * sizeof *found);
+    near->count = counts[n];
+    *place += counts[n];
+    if (i + 1 < end && (n + 1) % GXP_SEARCH_PART != 0 && counts[n + 1] != GXP_NONE)
+        for (k = 0; k < counts[n + 1]; k++) gxb_complex_prefetch_element(body->complex, found[*place + k]);
+    return GX_OK;
+}
+
+/* Inserts the triangle into every element of scratch.near_elements that it meets. */
 static gx_result gxp_insert_triangle(gxp_cut *cut, gxp_surface *s, uint32_t index, int scoped) {
     gx_body *body = cut->body;
     gxp_scratch *scratch = &body->scratch;
-    const double *p[3];
-    uint32_t k, i;
-    gx_result result;
-    for (k = 0; k < 3; k++) p[k] = s->given->vertices + 3 * (size_t)s->given->triangles[3 * index + k];
-    result = gxp_find_elements(body, p, &scratch->near_elements);
-    if (result == GX_OK && scratch->near_elements.count > 0) result = gxp_prepare_triangle(cut, s, index);
+    uint32_t i;
+    gx_result result = GX_OK;
+    if (scratch->near_elements.count > 0) result = gxp_prepare_triangle(cut, s, index);
     for (i = 0; i < scratch->near_elements.count && result == GX_OK; i++) {
         const uint32_t element = scratch->near_elements.data[i];
         result = gxb_complex_insert(body->complex, &s->triangles[index], element, scoped ? gxp_in_scope : NULL, body);
@@ -3863,13 +3961,13 @@ static gx_result gxp_insert_surface(gxp_cut *cut, gxp_surface *s, int scoped) {
     const uint32_t count = (uint32_t)s->given->triangle_count;
     gx_body *body = cut->body;
     gxp_scratch *scratch = &body->scratch;
-    uint32_t i, before = 0;
+    uint32_t i, before = 0, first = 0, end = 0, place = 0;
     gx_result result;
     scratch->order.count = 0;
     result = gxp_keys_room(body, &scratch->order, 2 * (size_t)count); /* sorting takes as much again */
     for (i = 0; i < count && result == GX_OK; i++) {
         const uint64_t random = gxp_mix(scratch->order.count); /* triangles without area change no other's round */
-        uint32_t round = GXP_LAST_ROUND, place;
+        uint32_t round = GXP_LAST_ROUND;
         if (s->flat[i]) continue;
         while (round > 16 && !(random >> 3 * (GXP_LAST_ROUND - round) & 7)) round--;
         before += round < GXP_LAST_ROUND;
@@ -3882,7 +3980,12 @@ static gx_result gxp_insert_surface(gxp_cut *cut, gxp_surface *s, int scoped) {
             const uint32_t times = (scratch->order.count - before) / before;
             gxb_complex_reserve(body->complex, times < GXP_EXPECTED ? times : GXP_EXPECTED);
         }
-        result = gxp_insert_triangle(cut, s, GXP_SECOND(scratch->order.data[i]), scoped);
+        if (i >= end) {
+            first = i;
+            result = gxp_search_batch(body, s->given, first, &end);
+        }
+        if (result == GX_OK) result = gxp_take_near(body, s->given, i, first, end, &place);
+        if (result == GX_OK) result = gxp_insert_triangle(cut, s, GXP_SECOND(scratch->order.data[i]), scoped);
     }
     return result;
 }
@@ -6291,6 +6394,27 @@ GXP_PREFETCHES void gxp_prefetch_links(const gx_body *body, uint32_t index) {
         }
 }
 
+#ifndef GXP_PREPARE_PART
+#define GXP_PREPARE_PART 128u /* points of a part: some fifty microseconds; fewer in tests/test_threads_cuts.c */
+#endif
+
+static void gxp_prepare_part(void *context, size_t part) {
+    gx_body *body = (gx_body *)context;
+    const uint32_t count = gxb_complex_point_count(body->complex),
+                   first = body->scratch.first_point + (uint32_t)part * GXP_PREPARE_PART;
+    gxb_complex_prepare_points(body->complex, first,
+                               count - first < GXP_PREPARE_PART ? count : first + GXP_PREPARE_PART);
+}
+
+/* On the host's threads, finds where on mesh edges and faces the points lie that the cut has made: half of the work of
+   integrals. */
+static void gxp_prepare_points(gx_body *body) {
+    const gx_jobs *jobs = &body->config.jobs;
+    const uint32_t count = gxb_complex_point_count(body->complex) - body->scratch.first_point;
+    if (jobs->parallel_for != NULL && count >= 4 * GXP_PREPARE_PART)
+        jobs->parallel_for(jobs->user, (count + GXP_PREPARE_PART - 1) / GXP_PREPARE_PART, gxp_prepare_part, body);
+}
+
 /* Integrates the new cells. Unless links were weighed before to be severed, weighs them here, while their facets are in
    the cache. */
 static gx_result gxp_integrate(gxp_cut *cut) {
@@ -6299,7 +6423,9 @@ static gx_result gxp_integrate(gxp_cut *cut) {
     const int weighed = cut->desc->sever_below > 0;
     double bound = 1;
     uint32_t i, before = GXP_NONE;
-    gx_result result = gxp_integrate_removed(cut);
+    gx_result result;
+    gxp_prepare_points(body);
+    result = gxp_integrate_removed(cut);
     scratch->narrow.count = 0;
     scratch->stamp++;
     for (i = 0; i < scratch->new_cells.count && result == GX_OK; i++) {
@@ -6439,6 +6565,7 @@ static gx_result gxp_make_cut(gxp_cut *cut) {
     report->min_link_ratio = 1;
     gxp_begin(cut);
     first_facet = gxb_complex_facet_count(body->complex);
+    body->scratch.first_point = gxb_complex_point_count(body->complex);
     start = gxp_seconds(body);
     result = gxp_arrange(cut);
     report->seconds_arrangement = gxp_seconds(body) - start;
@@ -19977,6 +20104,10 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
     return gxp_end(failure, result);
 }
 
+#undef GXP_SEARCH_PART
+#undef GXP_SEARCH_PARTS
+#undef GXP_SEARCH_ROOM
+#undef GXP_PREPARE_PART
 #undef GXP_COLD
 #undef GXP_APART
 #undef GXP_PREFETCH

@@ -41,7 +41,7 @@
  *                   giving back what nothing needs: is_sparse, survey, compact, forget
  *                   reading: gxb_complex_point and others
  *                   questions: gxb_complex_side, turn, compare, leaf_at, winding, barycentric, support,
- *                   barycentric_fine, barycentric_fixed
+ *                   prepare_points, barycentric_fine, barycentric_fixed
  *                   points of moved elements: gxb_pullback_misses, set, contains, orient, weights,
  *                   gxb_complex_pullback_side
  *     >>stream      a complex as bytes: gxb_stream_pass, has; gxb_complex_save, load
@@ -656,6 +656,10 @@ GXFEM_API int gxb_complex_winding(gxb_complex *complex, const uint32_t *points, 
 /* Barycentric coordinates of a point in an element, each with a relative error below 2^-49 of its own (0 where it is
  * 0). */
 GXFEM_API void gxb_complex_barycentric(gxb_complex *complex, uint32_t point, uint32_t element, double lambda[4]);
+/* Finds where on their mesh edges and faces the points first ... end-1 lie, as gxb_complex_barycentric does when it
+ * first needs that, as far as pairs of doubles tell. It then finds the same coordinates sooner. Threads may do this
+ * side by side for different points, while nothing else is done with the complex. Takes 16 kB of stack. */
+GXFEM_API void gxb_complex_prepare_points(gxb_complex *complex, uint32_t first, uint32_t end);
 /* Bit k is set unless barycentric coordinate k is 0 by the point's definition. Needs no arithmetic. */
 GXFEM_API unsigned gxb_complex_support(const gxb_complex *complex, uint32_t point, uint32_t element);
 /* The coordinates with a relative error below 2^-180. */
@@ -5351,16 +5355,22 @@ static GXBP_COLD void gxbp_exact_edge_parameter(gxb_complex *cx, gxb_cpoint *p) 
     p->parameter[1] = -gxb_num_ratio(&a, &d);
 }
 
+/* Finds by pairs where on the mesh edge the point lies. 0: they do not settle it */
+static int gxbp_pair_on_edge(gxb_complex *cx, uint32_t point) {
+    gxb_cpoint *p = &cx->store.points[point];
+    const gxbp_pair a = gxbp_pair_side(cx, p->def[0], p->def[2]), b = gxbp_pair_side(cx, p->def[1], p->def[2]);
+    const gxbp_pair d = gxbp_pair_add(&b, &a, -1), e = gxbp_pair_add(&a, &b, -1);
+    double parameter[2];
+    if (!gxbp_pair_ratio(&b, &d, &parameter[0]) || !gxbp_pair_ratio(&a, &e, &parameter[1])) return 0;
+    memcpy(p->parameter, parameter, sizeof parameter);
+    return 1;
+}
+
 /* Where on the mesh edge from node def[0] to node def[1] the point lies: 0 ... 1. Kept, since every element around the
  * edge needs it. */
 static double gxbp_edge_parameter(gxb_complex *cx, uint32_t point, int from_end) {
     gxb_cpoint *p = &cx->store.points[point];
-    if (p->parameter[0] < 0) {
-        const gxbp_pair a = gxbp_pair_side(cx, p->def[0], p->def[2]), b = gxbp_pair_side(cx, p->def[1], p->def[2]);
-        const gxbp_pair d = gxbp_pair_add(&b, &a, -1), e = gxbp_pair_add(&a, &b, -1);
-        if (!gxbp_pair_ratio(&b, &d, &p->parameter[0]) || !gxbp_pair_ratio(&a, &e, &p->parameter[1]))
-            gxbp_exact_edge_parameter(cx, p);
-    }
+    if (p->parameter[0] < 0 && !gxbp_pair_on_edge(cx, point)) gxbp_exact_edge_parameter(cx, p);
     return p->parameter[from_end];
 }
 
@@ -5494,6 +5504,26 @@ static int gxbp_face_barycentric(gxb_complex *cx, uint32_t point, uint32_t eleme
             if (n[k] == node[i]) lambda[k] = p->parameter[i];
     }
     return 1;
+}
+
+/* Each task has a cache of pairs of its own. */
+GXFEM_API void gxb_complex_prepare_points(gxb_complex *cx, uint32_t first, uint32_t end) {
+    gxb_complex own = *cx;
+    gxbp_pairs pairs;
+    uint32_t face;
+    own.pairs = &pairs;
+    gxbp_forget_pairs(&own);
+    for (; first < end; first++) {
+        const gxb_cpoint *p = &own.store.points[first];
+        if (p->parameter[0] >= 0) continue;
+        if (p->kind == GXB_LINE_PLANE && p->def[0] < own.node_count && p->def[1] < own.node_count)
+            (void)gxbp_pair_on_edge(&own, first);
+        for (face = 0; p->kind == GXB_THREE_PLANES && face < 3; face++) {
+            if (!gxbp_is_face_plane(&own, p->def[face])) continue;
+            (void)gxbp_pair_in_face(&own, first, face);
+            break;
+        }
+    }
 }
 
 /* Computes by pairs the coordinates that are not known yet (-1). Those that pairs do not settle stay -1. */

@@ -1317,6 +1317,9 @@ namespace Gxfem {
         public static extern void gxb_complex_prefetch_element(IntPtr complex, uint element);
 
         [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
+        public static extern void gxb_complex_prepare_points(IntPtr complex, uint first, uint end);
+
+        [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
         public static extern int gxb_complex_pullback_side(IntPtr complex, IntPtr back, uint element, uint plane);
 
         [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]

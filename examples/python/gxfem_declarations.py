@@ -1337,6 +1337,7 @@ FUNCTIONS = {
     'gxb_complex_point': (POINTER(gxb_cpoint), [POINTER(gxb_complex), c_uint32]),
     'gxb_complex_point_count': (c_uint32, [POINTER(gxb_complex)]),
     'gxb_complex_prefetch_element': (None, [POINTER(gxb_complex), c_uint32]),
+    'gxb_complex_prepare_points': (None, [POINTER(gxb_complex), c_uint32, c_uint32]),
     'gxb_complex_pullback_side': (c_int, [POINTER(gxb_complex), POINTER(gxb_pullback), c_uint32, c_uint32]),
     'gxb_complex_reserve': (None, [POINTER(gxb_complex), c_uint32]),
     'gxb_complex_rollback': (None, [POINTER(gxb_complex)]),
