@@ -3886,8 +3886,7 @@ static gx_result gxp_take_near(gx_body *body, const gx_surface *given, uint32_t 
                                uint32_t *place) {
     gxp_scratch *scratch = &body->scratch;
     gxp_words *near = &scratch->near_elements;
-    const uint32_t n = i - first, *counts = scratch->batch.data;
-    const uint32_t *found = counts + GXP_SEARCH_PARTS * GXP_SEARCH_PART;
+    const uint32_t n = i - first, *counts = scratch->batch.data, *found;
     const double *p[3];
     uint32_t k;
     gx_result result;
@@ -3896,6 +3895,7 @@ static gx_result gxp_take_near(gx_body *body, const gx_surface *given, uint32_t 
         gxp_corners_of(given, GXP_SECOND(scratch->order.data[i]), p);
         return gxp_find_elements(body, p, near);
     }
+    found = counts + GXP_SEARCH_PARTS * GXP_SEARCH_PART;
     near->count = 0;
     result = gxp_words_room(body, near, counts[n]);
     if (result != GX_OK || counts[n] == 0) return result;
