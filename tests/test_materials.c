@@ -600,6 +600,38 @@ static void expect_refusal(gx_body *body, const gx_cut_desc *desc, gx_result res
     ck_assert(before == gx_body_state_hash(body));
 }
 
+/* What is released has to be in the scope on both sides. */
+START_TEST(released_on_both_sides) {
+    workload w = grid(2, 1, 1, 5);
+    gx_body *body = mixed_body(&w);
+    const uint32_t pair[2] = {1, GX_ANY_MATERIAL};
+    static uint32_t scope[256];
+    gx_cut_desc desc;
+    gx_view view;
+    uint32_t i;
+    int whole;
+    add_bar(wl_add_surface(&w, 3 + 1), 0.1, 0.1, 0.1, 0.7, 0.6, 0.5);
+    cut_by(body, &w, 0, 1);
+    memset(&desc, 0, sizeof desc);
+    desc.release = pair;
+    desc.release_count = 1;
+    desc.scope_cells = scope;
+    for (whole = 0; whole < 2; whole++) {
+        view = view_of(body);
+        ck_assert_uint_eq(view.fragment_count, 1);
+        ck_assert_uint_le(view.cell_count, 256);
+        desc.scope_cell_count = 0;
+        for (i = 0; i < view.cell_count; i++)
+            if (whole || view.cell_material[i] == 1) scope[desc.scope_cell_count++] = i;
+        ck_assert_uint_gt(desc.scope_cell_count, 1);
+        ck_assert_int_eq(gx_body_cut(body, &desc, NULL, NULL), GX_OK);
+    }
+    ck_assert_uint_eq(view_of(body).fragment_count, 2);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
 START_TEST(refused_materials) {
     uint32_t pairs[4] = {0, 1, 2, MATERIALS};
     workload w = grid(2, 1, 1, 5), region = wl_empty();
@@ -635,6 +667,10 @@ START_TEST(refused_materials) {
     surface.triangle_count--;
     ck_assert_int_eq(gx_body_cut(body, &desc, NULL, &failure), GX_ERROR_NOT_CLOSED);
     surface.triangle_count++;
+    memset(&desc, 0, sizeof desc); /* neither surfaces nor pairs */
+    expect_refusal(body, &desc, GX_ERROR_ARGUMENT, "surfaces", SIZE_MAX);
+    desc.surfaces = &surface;
+    desc.surface_count = 1;
     gx_body_destroy(body);
     materials[1].density = 1e300; /* nothing has it yet */
     ck_assert_int_eq(gx_body_create(&created, &body, NULL), GX_OK);
@@ -728,6 +764,7 @@ static Suite *suite(void) {
     tcase_add_test(tests, given_in_motion);
     tcase_add_test(tests, interfaces_outlast_compaction);
     tcase_add_test(tests, refused_materials);
+    tcase_add_test(tests, released_on_both_sides);
     tcase_add_loop_test(tests, memory_runs_out, 0, 3);
     suite_add_tcase(s, tests);
     return s;

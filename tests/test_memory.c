@@ -815,6 +815,7 @@ START_TEST(contact) {
     static const action pressed[] = {cut_second_sheet, hold_low, touch, press, press, press, look, NULL},
                         cut_since_then[] = {cut_second_sheet, hold_low, touch, press, press, press, cut_sheet, NULL},
                         others[] = {cut_second_sheet, hold_low, touch, press, cut_sheet, NULL};
+    static const action apart[] = {cut_second_sheet, hold_low, touch, NULL};
     memory m = plenty();
     sweep("a step in contact", pressed, press);
     sweep("events", pressed, events);
@@ -824,6 +825,10 @@ START_TEST(contact) {
     source = prepared(&m, cut_since_then);
     sweep("restoring contact after a cut", others, restore);
     sweep("restoring contact", pressed, restore);
+    gx_body_destroy(source);
+    source = prepared(&m, apart);
+    sweep("restoring what does not touch", pressed, restore);
+    sweep("restoring what does not touch in a body with other cuts", cut_since_then, restore);
     gx_body_destroy(source);
     check_empty(&m, "contact");
 }
@@ -838,6 +843,10 @@ static gx_result cut_thinner(gx_body *body) {
     s[0] = sheet(low);
     s[1] = sheet(high);
     return cut(body, s, 2, 0, 0);
+}
+static gx_result ask_model(gx_body *body) {
+    gxs_model model;
+    return gx_body_model(body, &model, NULL);
 }
 /* Forces and targets of all copies */
 static gx_result driven_step(gx_body *body) {
@@ -893,10 +902,18 @@ START_TEST(thin_pieces) {
     static const action thinner[] = {hold, step, cut_thinner, NULL},
                         thinner_yet[] = {hold, cut_thinner, step, cut_sheet, NULL},
                         in_motion[] = {hold, cut_thinner, look, step, NULL};
+    memory m = plenty();
+    gx_body *body;
+    gx_view view;
     affine_below = 1;
+    body = prepared(&m, in_motion);
+    ck_assert_int_eq(gx_body_view(body, &view, NULL), GX_OK);
+    ck_assert(view.copy_affine != NULL);
+    gx_body_destroy(body);
     sweep("a cut that makes thin pieces", held, cut_thinner);
     sweep_update("a step after it", thinner, step);
     sweep_update("a step of thin pieces that were cut", thinner_yet, step);
+    sweep_update("a model of thin pieces that were cut", thinner_yet, ask_model);
     sweep("a step with forces and targets", in_motion, driven_step);
     sweep("a step with anchors", in_motion, anchored_step);
     sweep("a blade in thin pieces", in_motion, blade_that_moves);

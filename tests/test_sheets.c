@@ -1516,7 +1516,112 @@ START_TEST(contacts_in_bent_bodies) {
 }
 END_TEST
 
+/* Cells that motion has made flat hold nothing: blades pass them and points miss them. */
+START_TEST(flat_cells_hold_nothing) {
+    workload w;
+    gx_body *body = partly_affine(&w, _i);
+    const gx_view view = view_of(body);
+    const double edges[2][6] = {{-9, -0.4, -0.1, 9, -0.3, 0.1}, {-9, 5.3, -0.1, 9, 5.4, 0.1}};
+    double x[3] = {2.5, 2.1, 0}, back[3];
+    gx_blade *blade = NULL;
+    gx_blade_report report;
+    gx_hit hits[16];
+    size_t i, count;
+    for (i = 0; i < view.copy_count; i++) {
+        view.displacement[3 * i + 2] = -w.positions[3 * view.copy_node[i] + 2];
+        if (view.copy_affine[i]) body->copies.linear[9 * i + 8] = -1;
+    }
+    ck_assert_int_eq(gx_body_locate_all(body, x, hits, 16, &count, NULL), GX_OK);
+    for (i = 0; i < count; i++) {
+        ck_assert_int_eq(gx_body_place(body, hits[i].slot, hits[i].material, back, NULL), GX_OK);
+        ck_assert_double_lt(fabs(back[0] - x[0]) + fabs(back[1] - x[1]) + fabs(back[2]), 1e-6);
+    }
+    ck_assert_int_eq(gx_blade_create(body, NULL, &blade, NULL), GX_OK);
+    for (i = 0; i < 2; i++) ck_assert_int_eq(gx_blade_move(blade, edges[i], 2, NULL, 0, &report, NULL), GX_OK);
+    ck_assert_int_eq(gx_blade_lift(blade, NULL, NULL), GX_OK);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* Blades that may leave out moves: the cut that one of them makes, or another cut, leaves thin slices. Moves count. */
+START_TEST(moves_before_slices) {
+    workload w = grid(3, 2, 2, 5);
+    gx_body *body = sheet_body(&w, 1);
+    gx_step_desc step = step_of(0.01, 0);
+    gx_blade_desc desc;
+    gx_blade *blade = NULL;
+    int i;
+    memset(&desc, 0, sizeof desc);
+    desc.min_advance = _i == 0 ? 0.3 : 0;
+    add_axis_plane(&w, 2, 0.75);
+    add_axis_plane(&w, 2, 1.25);
+    ck_assert_uint_eq(affine_count(body), 0);
+    ck_assert_int_eq(gx_blade_create(body, &desc, &blade, NULL), GX_OK);
+    for (i = 0; i <= 60; i++) {
+        const double y = -0.3 + 0.045 * i, edge[6] = {-9, y, 1.02, 9, y + 0.01, 1.03};
+        if (i == 30) cut_by(body, &w, 0, _i < 2 ? 2 : 1);
+        ck_assert_int_eq(gx_blade_move(blade, edge, 2, NULL, 0, NULL, NULL), GX_OK);
+        advance(body, &step);
+    }
+    ck_assert_int_eq(gx_blade_lift(blade, NULL, NULL), GX_OK);
+    ck_assert_uint_gt(affine_count(body), 0);
+    ck_assert_uint_eq(view_of(body).fragment_count, _i < 2 ? 4 : 3);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
 /* ---- contact ---- */
+
+/* A body of which some copies are affine falls on a plane that carries it. */
+START_TEST(partly_affine_bodies_lie) {
+    workload w;
+    gx_body *body = partly_affine(&w, 1);
+    gx_step_desc step = step_of(0.02, -10);
+    gx_contact_desc desc;
+    gx_collider plane;
+    gx_collider_load load;
+    gx_motion motions[8];
+    double mass = view_of(body).mass;
+    int i;
+    memset(&desc, 0, sizeof desc);
+    memset(&plane, 0, sizeof plane);
+    plane.kind = GX_COLLIDER_PLANE;
+    for (i = 0; i < 3; i++) plane.pose[5 * i] = 1;
+    plane.pose[11] = -0.01;
+    ck_assert_int_eq(gx_body_contact(body, &desc, NULL), GX_OK);
+    step.colliders = &plane;
+    step.collider_count = 1;
+    step.collider_loads = &load;
+    for (i = 0; i < 60; i++) advance(body, &step);
+    ck_assert_int_eq(gx_body_motion(body, motions, 8, NULL), GX_OK);
+    ck_assert_double_lt(fabs(motions[0].velocity[2]), 0.3);
+    ck_assert_double_lt(fabs(load.force[2] + 10 * mass), 0.5 * 10 * mass);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
+/* A step by quality does not read the integrator. */
+START_TEST(quality_chooses_the_integrator) {
+    uint64_t hash[2];
+    int which, i;
+    for (which = 0; which < 2; which++) {
+        workload w;
+        gx_body *body = partly_affine(&w, 0);
+        gx_step_desc step = step_of(0.02, -10);
+        step.quality = 0.05;
+        step.integrator = which ? GXS_BDF2 : GXS_BDF1;
+        hold_left(body);
+        for (i = 0; i < 3; i++) advance(body, &step);
+        hash[which] = gx_body_state_hash(body);
+        gx_body_destroy(body);
+        wl_free(&w);
+    }
+    ck_assert(hash[0] == hash[1]);
+}
+END_TEST
 
 /* A plate of one layer of cubes, cut into slices that all lie on the ground, one on the other: each carries those above
    it, and hardly anything moves. Bent slices: cells have affine copies. */
@@ -1790,6 +1895,10 @@ int main(void) {
     tcase_add_loop_test(tcase, blades_cut_rolled_plates, 0, 6);
     tcase_add_test(tcase, rolled_plates_are_carved);
     tcase_add_loop_test(tcase, contacts_in_bent_bodies, 0, 2);
+    tcase_add_loop_test(tcase, flat_cells_hold_nothing, 0, 1);
+    tcase_add_loop_test(tcase, moves_before_slices, 2, 3);
+    tcase_add_test(tcase, partly_affine_bodies_lie);
+    tcase_add_test(tcase, quality_chooses_the_integrator);
     tcase_add_loop_test(tcase, blades_pass_through_flung_plates, 0, passes != NULL ? atoi(passes) : 14 / FEWER);
     suite_add_tcase(suite, tcase);
     tcase = tcase_create("contact");

@@ -852,6 +852,13 @@ START_TEST(arms_meet) {
             ck_assert_double_lt(fabs(contacts[i].depth - 0.05), 1e-3);
         }
     }
+    {
+        gx_contact_event event;
+        (void)view_of(body);
+        ck_assert_int_eq(gx_body_contact_events(body, &event, 1, &count, NULL), GX_OK);
+        ck_assert(count == 1 && event.fragment == event.other && event.load > 0);
+        for (i = 0; i < 3; i++) ck_assert(!(fabs(event.force[i]) > 0)); /* a piece does not push itself */
+    }
     gx_body_destroy(body);
     wl_free(&w);
 }
@@ -1066,7 +1073,8 @@ START_TEST(events_are_told) {
     ck_assert_int_eq(gx_body_contact_events(body, events, 8, &count, &failure), GX_OK);
     ck_assert_uint_eq(count, 0);
     take(body, &step);
-    ck_assert_int_eq(gx_body_contact_events(body, events, 0, &count, &failure), GX_ERROR_CAPACITY);
+    ck_assert_int_eq(gx_body_contact_events(body, NULL, 8, &count, &failure), GX_ERROR_ARGUMENT);
+    ck_assert_int_eq(gx_body_contact_events(body, NULL, 0, &count, &failure), GX_ERROR_CAPACITY);
     ck_assert_str_eq(failure.field, "capacity");
     ck_assert_uint_eq(count, 1);
     ck_assert_int_eq(gx_body_contact_events(body, events, 8, &count, &failure), GX_OK);
@@ -1401,6 +1409,14 @@ START_TEST(damage_to_contact) {
     expect_damage(body, &t->known[0].id, &none, sizeof none, "colliders out of order");
     i = 2;
     expect_damage(body, &t->on, &i, sizeof i, "on or off");
+    {
+        gx_contact_event events[8];
+        size_t count;
+        (void)view_of(body);
+        ck_assert_int_eq(gx_body_contact_events(body, events, 8, &count, NULL), GX_OK);
+        ck_assert_uint_gt(t->touching.count, 3);
+        expect_damage(body, &t->touching.data[0], &none, sizeof none, "events out of order");
+    }
     gx_body_destroy(body);
     wl_free(&w);
 }
@@ -1426,11 +1442,14 @@ START_TEST(saving_without_memory) {
     for (frame = 0; frame < 5; frame++) take(body, &step);
     ck_assert_uint_gt(body->touch.surfaces[body->touch.current].state_count, 0);
     if (_i % 2) cut_by(body, &w, 1, 1); /* the surface is to be made for saving */
+    if (_i == 5) cut_by(free_one, &w, 1, 1);
     for (n = 0; result != GX_OK; n++) {
         const uint64_t state = gx_body_state_hash(body);
         ck_assert_uint_lt(n, 20000);
         fail_from(&m, n, 1);
-        result = _i < 2 ? gx_body_clone(body, &other, NULL) : gx_body_restore(body, free_one, NULL);
+        result = _i < 2 ? gx_body_clone(body, &other, NULL)
+               : _i < 4 ? gx_body_restore(body, free_one, NULL)
+                        : gx_body_restore(free_one, body, NULL);
         never_fail(&m);
         ck_assert(result == GX_OK || (result == GX_ERROR_MEMORY && gx_body_state_hash(body) == state));
     }
@@ -1473,7 +1492,7 @@ static Suite *suite(void) {
     tcase_add_loop_test(tests, filters, 0, 2);
     tcase_add_test(tests, stacks_sleep);
     tcase_add_test(tests, threads_do_not_matter);
-    ADD_SOME(tests, saving_without_memory, 4);
+    ADD_SOME(tests, saving_without_memory, 6);
     suite_add_tcase(s, tests);
     return s;
 }
