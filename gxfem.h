@@ -3893,7 +3893,6 @@ static gx_result gxp_take_near(gx_body *body, const gx_surface *given, uint32_t 
         return gxp_find_elements(body, p, near);
     }
     found = counts + GXP_SEARCH_PARTS * GXP_SEARCH_PART;
-    found = counts + GXP_SEARCH_PARTS * GXP_SEARCH_PART;
     near->count = 0;
     result = gxp_words_room(body, near, counts[n]);
     if (result != GX_OK || counts[n] == 0) return result;
