@@ -2798,17 +2798,14 @@ static uint32_t gxp_search_elements(const gx_body *body, const double *const p[3
 
 /* Finds the elements that the triangle may meet. */
 static gx_result gxp_find_elements(gx_body *body, const double *const p[3], gxp_words *found) {
-    gx_result result = GX_OK;
     uint32_t count;
-    for (;;) {
-        found->count = 0;
-        count = gxp_search_elements(body, p, found->data, found->capacity);
-        if (count != GXP_NONE || result != GX_OK) break;
-        result = gxp_words_room(body, found, (size_t)found->capacity + 64);
+    found->count = 0;
+    while ((count = gxp_search_elements(body, p, found->data, found->capacity)) == GXP_NONE) {
+        const gx_result result = gxp_words_room(body, found, (size_t)found->capacity + 64);
         if (result != GX_OK) return result;
     }
     found->count = count;
-    return result;
+    return GX_OK;
 }
 
 /* >>copies: tables of copies, cells and leaves --------------------------------------------------------------------- */
@@ -3886,8 +3883,7 @@ static gx_result gxp_take_near(gx_body *body, const gx_surface *given, uint32_t 
                                uint32_t *place) {
     gxp_scratch *scratch = &body->scratch;
     gxp_words *near = &scratch->near_elements;
-    const uint32_t n = i - first, *counts = scratch->batch.data;
-    const uint32_t *found = counts + GXP_SEARCH_PARTS * GXP_SEARCH_PART;
+    const uint32_t n = i - first, *counts = scratch->batch.data, *found;
     const double *p[3];
     uint32_t k;
     gx_result result;
@@ -3896,6 +3892,7 @@ static gx_result gxp_take_near(gx_body *body, const gx_surface *given, uint32_t 
         gxp_corners_of(given, GXP_SECOND(scratch->order.data[i]), p);
         return gxp_find_elements(body, p, near);
     }
+    found = counts + GXP_SEARCH_PARTS * GXP_SEARCH_PART;
     near->count = 0;
     result = gxp_words_room(body, near, counts[n]);
     if (result != GX_OK || counts[n] == 0) return result;
@@ -12847,8 +12844,7 @@ static int gxp_meets(const gx_body *body, const gxp_touch_surface *s, double dt,
     height = gxp_dot(y, n);
     square = gxp_dot(y, y);
     along = square > height * height ? sqrt(square - height * height) : 0;
-    reach = s->vertices[f->vertex[0]].size;
-    reach = t->desc.depth * (reach < v->size ? reach : v->size);
+    reach = t->desc.depth * fmin(v->size, s->vertices[f->vertex[0]].size);
     if (!(pair->gap > -reach * facing) ||
         !(pair->gap - (pair->approach > 0 ? dt * pair->approach : 0) < GXP_TOUCH_NEAR * v->size) ||
         !(along <= GXP_TOUCH_BESIDE * v->size + GXP_TOUCH_SLANT * fabs(height)) || !(square < slack * slack))
@@ -12979,8 +12975,7 @@ static double gxp_box_gap(const gxp_touch_box *box, const gxp_touch_crowd *crowd
     if (facing < GXP_TOUCH_FACING * (1 - 1e-9)) return GXP_TREE_BEYOND;
     least -= 1e-9 * crowd->size;
     most += 1e-9 * crowd->size;
-    if (least > crowd->slack || most < -crowd->ahead || (most < 0 && square > crowd->ahead * crowd->ahead))
-        return GXP_TREE_BEYOND;
+    if (most < -crowd->ahead || (most < 0 && square > crowd->ahead * crowd->ahead)) return GXP_TREE_BEYOND;
     least = least > -crowd->ahead ? least : -crowd->ahead;
     most = most < crowd->slack ? most : crowd->slack;
     width = crowd->beside + GXP_TOUCH_SLANT * (most > -least ? most : -least);
@@ -13010,10 +13005,11 @@ static void gxp_join_crowd(const gxp_touch *t, const gxp_touch_surface *s, doubl
     gxp_add_to_bounds(x, &crowd->own.from);
     gxp_add_to_bounds(end, &crowd->own.to);
     gxp_add_to_bounds(x + 6, &crowd->own.normals);
-    crowd->size = fmax(crowd->size, v->size);
-    crowd->slack = fmax(crowd->slack, gxp_touch_slack(t, v) * more);
-    crowd->ahead = fmax(crowd->ahead, gxp_touch_ahead(v) * more);
-    crowd->beside = fmax(crowd->beside, GXP_TOUCH_BESIDE * v->size + 1e-9 * v->size);
+    if (!(v->size > crowd->size)) return; /* all reaches grow with the size */
+    crowd->size = v->size;
+    crowd->slack = gxp_touch_slack(t, v) * more;
+    crowd->ahead = gxp_touch_ahead(v) * more;
+    crowd->beside = GXP_TOUCH_BESIDE * v->size + 1e-9 * v->size;
 }
 
 /* Finds the boxes in and below those of `from`, or below the root, that may hold what a crowd meets: those of a level
@@ -13053,7 +13049,8 @@ static gxp_touch_pair gxp_no_pair(uint32_t sample) {
 
 /* How far from a sample a better facet than that of its pair may be at most, m */
 static double gxp_pair_slack(const gxp_touch_surface *s, const gxp_touch_pair *best, double slack) {
-    return fmin(sqrt(best->score) + 1e-9 * s->vertices[best->sample].size, slack);
+    const double near = sqrt(best->score) + 1e-9 * s->vertices[best->sample].size;
+    return near < slack ? near : slack;
 }
 
 /* The boxes of touch.near from the step's start to its end, as a crowd sees them that moves by `shift` within the step:
@@ -13312,7 +13309,10 @@ static gx_result gxp_seek_pairs(gx_body *body, const gxp_touch_surface *s, doubl
     for (i = 0; i < s->vertex_count && result == GX_OK && s->facet_count > 0; i++) {
         gxp_touch_pair pair = gxp_no_pair(i);
         pair.facet = s->guesses.data[i];
-        if (pair.facet != GXP_NONE && gxp_meets(body, s, dt, &pair)) result = gxp_list_pair(body, s, &pair, failure);
+        if (pair.facet != GXP_NONE) {
+            (void)gxp_meets(body, s, dt, &pair); /* as it was found */
+            result = gxp_list_pair(body, s, &pair, failure);
+        }
         if (result == GX_OK && (t->order.count > 0 || i < state_end))
             result = gxp_seek_colliders(body, s, dt, i, &next, failure);
     }

@@ -5515,9 +5515,7 @@ GXFEM_API void gxb_complex_prepare_points(gxb_complex *cx, uint32_t first, uint3
     gxbp_forget_pairs(&own);
     for (; first < end; first++) {
         const gxb_cpoint *p = &own.store.points[first];
-        if (p->parameter[0] >= 0) continue;
-        if (p->kind == GXB_LINE_PLANE && p->def[0] < own.node_count && p->def[1] < own.node_count)
-            (void)gxbp_pair_on_edge(&own, first);
+        if (p->kind == GXB_LINE_PLANE && p->def[1] < own.node_count) (void)gxbp_pair_on_edge(&own, first);
         for (face = 0; p->kind == GXB_THREE_PLANES && face < 3; face++) {
             if (!gxbp_is_face_plane(&own, p->def[face])) continue;
             (void)gxbp_pair_in_face(&own, first, face);
