@@ -10583,7 +10583,7 @@ static double gxp_drift(const gx_body *body) {
    their boxes. One pass over the copies. Errors: MEMORY, LIMIT. */
 static gx_result gxp_refit_loosely(gx_body *body, double most, double *slack) {
     *slack = body->tree.cluster_count > 0 ? gxp_drift(body) * (1 + GXP_TREE_MARGIN) : HUGE_VAL;
-    if (*slack <= most) return GX_OK;
+    if (*slack <= most && !body->copies.bends) return GX_OK; /* drift does not see what an A moves */
     *slack = 0;
     return gxp_refit_tree(body);
 }

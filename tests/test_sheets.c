@@ -1559,14 +1559,14 @@ START_TEST(moves_before_slices) {
     ck_assert_uint_eq(affine_count(body), 0);
     ck_assert_int_eq(gx_blade_create(body, &desc, &blade, NULL), GX_OK);
     for (i = 0; i <= 60; i++) {
-        const double y = -0.3 + 0.045 * i, edge[6] = {-9, y, 1.02, 9, y + 0.01, 1.03};
-        if (i == 30) cut_by(body, &w, 0, _i < 2 ? 2 : 1);
+        const double y = -0.3 + 0.045 * i, z = _i == 3 ? 0.5 : 1.02, edge[6] = {-9, y, z, 9, y + 0.01, z + 0.01};
+        if (i == 30 && _i < 3) cut_by(body, &w, 0, _i < 2 ? 2 : 1);
         ck_assert_int_eq(gx_blade_move(blade, edge, 2, NULL, 0, NULL, NULL), GX_OK);
         advance(body, &step);
     }
     ck_assert_int_eq(gx_blade_lift(blade, NULL, NULL), GX_OK);
     ck_assert_uint_gt(affine_count(body), 0);
-    ck_assert_uint_eq(view_of(body).fragment_count, _i < 2 ? 4 : 3);
+    ck_assert_uint_eq(view_of(body).fragment_count, _i < 2 ? 4 : _i == 2 ? 3 : 2);
     gx_body_destroy(body);
     wl_free(&w);
 }
@@ -1896,7 +1896,7 @@ int main(void) {
     tcase_add_test(tcase, rolled_plates_are_carved);
     tcase_add_loop_test(tcase, contacts_in_bent_bodies, 0, 2);
     tcase_add_loop_test(tcase, flat_cells_hold_nothing, 0, 1);
-    tcase_add_loop_test(tcase, moves_before_slices, 2, 3);
+    tcase_add_loop_test(tcase, moves_before_slices, 0, 4);
     tcase_add_test(tcase, partly_affine_bodies_lie);
     tcase_add_test(tcase, quality_chooses_the_integrator);
     tcase_add_loop_test(tcase, blades_pass_through_flung_plates, 0, passes != NULL ? atoi(passes) : 14 / FEWER);
