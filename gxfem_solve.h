@@ -6011,20 +6011,26 @@ static void gxsp_point_function(const gxsp_affine_block *block, int point, int l
     }
 }
 
-/* The same function: slack[i] is its part of A_i less its gradient at the point, 1/m, where corner i is affine, else 0.
- * length: see gxsp_affine */
+/* Its gradient in the material's frame */
+static void gxsp_point_gradient(const gxsp_affine_block *block, int point, int l, const double share[16],
+                                double gradient[3]) {
+    double w[4];
+    int j, a;
+    gxsp_point_corners(block, point, l, share, w);
+    for (a = 0; a < 3; a++)
+        for (gradient[a] = 0, j = 1; j < 4; j++) gradient[a] += (w[j] - w[0]) * block->gradient[3 * (j - 1) + a][l];
+}
+
+/* slack[i]: its part of A_i less its gradient, 1/m, where corner i is affine, else 0. length: see gxsp_affine */
 static void gxsp_point_slack(const gxsp_affine_block *block, double length, int point, int l, const double share[16],
                              float slack[4][3]) {
-    double w[4];
-    int i, j, a;
-    gxsp_point_corners(block, point, l, share, w);
-    for (a = 0; a < 3; a++) {
-        double gradient = 0; /* in the material's frame */
-        for (j = 1; j < 4; j++) gradient += (w[j] - w[0]) * block->gradient[3 * (j - 1) + a][l];
-        for (i = 0; i < 4; i++)
+    double gradient[3];
+    int i, a;
+    gxsp_point_gradient(block, point, l, share, gradient);
+    for (i = 0; i < 4; i++)
+        for (a = 0; a < 3; a++)
             slack[i][a] =
-                block->vector[4 + 3 * i][l] == GXSP_NONE ? 0 : (float)(share[4 + 3 * i + a] / length - gradient);
-    }
+                block->vector[4 + 3 * i][l] == GXSP_NONE ? 0 : (float)(share[4 + 3 * i + a] / length - gradient[a]);
 }
 
 /* flux[9 s + 3 r + m] = weight x dP_rm, in the frame of V, when dF is the gradient of a function in direction s */
@@ -11192,31 +11198,19 @@ static void gxsp_lead_lights(const gxsp_problem *problem) {
 /* An element's mean gradient of the way from one displacement to another, m/m: of[c][a] */
 static void gxsp_affine_gradient(const gxsp_affine_block *block, int l, const double *from, const double *to,
                                  double of[3][3]) {
-    double w[4][3], mean[4], way[2];
-    int i, j, k, a, c;
-    for (i = 0; i < 4; i++) {
-        mean[i] = block->shape[0][i][l] + block->shape[1][i][l] + block->shape[2][i][l] + block->shape[3][i][l];
-        for (c = 0; c < 3; c++) {
-            const size_t at = 3 * (size_t)block->vector[i][l] + (size_t)c;
-            w[i][c] = to[at] - from[at];
+    int c, a, k, p;
+    memset(of, 0, 9 * sizeof(double));
+    for (c = 0; c < 3; c++) {
+        double share[16], gradient[3];
+        for (k = 0; k < 16; k++) {
+            const size_t at = 3 * (size_t)block->vector[k][l] + (size_t)c;
+            share[k] = block->vector[k][l] == GXSP_NONE ? 0 : to[at] - from[at];
+        }
+        for (p = 0; p < 4; p++) {
+            gxsp_point_gradient(block, p, l, share, gradient);
+            for (a = 0; a < 3; a++) of[c][a] += 0.25 * gradient[a];
         }
     }
-    for (k = 0; k < 6; k++)
-        for (a = 0; a < 3; a++)
-            for (c = 0; c < 3; c++) {
-                double e;
-                for (i = 0; i < 2; i++) {
-                    const uint32_t vector = block->vector[4 + 3 * gxsp_edge_ends[k][i] + a][l];
-                    const size_t at = 3 * (size_t)vector + (size_t)c;
-                    way[i] = vector == GXSP_NONE ? 0 : to[at] - from[at];
-                }
-                e = (way[0] - way[1]) * gxsp_affine_edge(block, k, a, l);
-                w[gxsp_edge_ends[k][1]][c] += mean[gxsp_edge_ends[k][0]] * e;
-                w[gxsp_edge_ends[k][0]][c] += mean[gxsp_edge_ends[k][1]] * e;
-            }
-    for (c = 0; c < 3; c++)
-        for (a = 0; a < 3; a++)
-            for (of[c][a] = 0, j = 1; j < 4; j++) of[c][a] += (w[j][c] - w[0][c]) * block->gradient[3 * (j - 1) + a][l];
 }
 
 /* Some fields have many descriptions by affine copies: a difference of two moves nothing, has no force and no inertia,

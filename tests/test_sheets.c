@@ -1574,26 +1574,33 @@ END_TEST
 
 /* ---- contact ---- */
 
+/* Contact, and a plane at z = 0 in the step. ground, load: as long as steps are taken */
+static void lay_on_ground(gx_body *body, gx_step_desc *step, gx_collider *ground, gx_collider_load *load,
+                          double friction) {
+    gx_contact_desc contact;
+    memset(&contact, 0, sizeof contact);
+    memset(ground, 0, sizeof *ground);
+    contact.friction = ground->friction = friction;
+    ground->kind = GX_COLLIDER_PLANE;
+    ground->pose[0] = ground->pose[5] = ground->pose[10] = 1;
+    step->colliders = ground;
+    step->collider_count = 1;
+    step->collider_loads = load;
+    ck_assert_int_eq(gx_body_contact(body, &contact, NULL), GX_OK);
+}
+
 /* A body of which some copies are affine falls on a plane that carries it. */
 START_TEST(partly_affine_bodies_lie) {
     workload w;
     gx_body *body = partly_affine(&w, 1);
     gx_step_desc step = step_of(0.02, -10);
-    gx_contact_desc desc;
     gx_collider plane;
     gx_collider_load load;
     gx_motion motions[8];
     double mass = view_of(body).mass;
     int i;
-    memset(&desc, 0, sizeof desc);
-    memset(&plane, 0, sizeof plane);
-    plane.kind = GX_COLLIDER_PLANE;
-    for (i = 0; i < 3; i++) plane.pose[5 * i] = 1;
+    lay_on_ground(body, &step, &plane, &load, 0);
     plane.pose[11] = -0.01;
-    ck_assert_int_eq(gx_body_contact(body, &desc, NULL), GX_OK);
-    step.colliders = &plane;
-    step.collider_count = 1;
-    step.collider_loads = &load;
     for (i = 0; i < 60; i++) advance(body, &step);
     ck_assert_int_eq(gx_body_motion(body, motions, 8, NULL), GX_OK);
     ck_assert_double_lt(fabs(motions[0].velocity[2]), 0.3);
@@ -1629,7 +1636,6 @@ START_TEST(slices_lie_on_each_other) {
     workload w = grid(4, 3, 1, 5);
     gx_body *body = sheet_body(&w, 1);
     gx_step_desc step = step_of(0.01, -10);
-    gx_contact_desc contact;
     gx_collider ground;
     gx_collider_load load;
     gx_view view;
@@ -1642,17 +1648,8 @@ START_TEST(slices_lie_on_each_other) {
     view = view_of(body);
     ck_assert_uint_eq(view.fragment_count, 3);
     ck_assert_uint_gt(affine_count(body), view.copy_count / 2);
-    memset(&contact, 0, sizeof contact);
-    memset(&ground, 0, sizeof ground);
-    contact.friction = 0.5;
-    ground.kind = GX_COLLIDER_PLANE;
-    ground.pose[0] = ground.pose[5] = ground.pose[10] = 1;
-    ground.friction = 0.5;
-    step.colliders = &ground;
-    step.collider_count = 1;
-    step.collider_loads = &load;
+    lay_on_ground(body, &step, &ground, &load, 0.5);
     step.mass_damping = 2;
-    ck_assert_int_eq(gx_body_contact(body, &contact, NULL), GX_OK);
     for (round = 0; round < 150; round++) {
         advance(body, &step);
         if (round >= 130) force += load.force[2] / 20;
@@ -1684,24 +1681,14 @@ START_TEST(pressed_slices_rest) {
     workload w = grid(4, 3, 1, 5);
     gx_body *body = sheet_body(&w, 1);
     gx_step_desc step = step_of(0.01, -10);
-    gx_contact_desc contact;
     gx_collider ground;
     gx_collider_load load;
     double most = 0, speed = 0;
     int round;
     add_axis_plane(&w, 2, 0.05);
     cut_by(body, &w, 0, 1);
-    memset(&contact, 0, sizeof contact);
-    memset(&ground, 0, sizeof ground);
-    contact.friction = 0.3;
-    ground.kind = GX_COLLIDER_PLANE;
-    ground.pose[0] = ground.pose[5] = ground.pose[10] = 1;
-    ground.friction = 0.3;
-    step.colliders = &ground;
-    step.collider_count = 1;
-    step.collider_loads = &load;
+    lay_on_ground(body, &step, &ground, &load, 0.3);
     step.mass_damping = 2;
-    ck_assert_int_eq(gx_body_contact(body, &contact, NULL), GX_OK);
     for (round = 0; round < 120; round++) {
         const gx_view view = view_of(body);
         size_t i;
