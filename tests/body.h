@@ -44,6 +44,15 @@ static inline gx_body *body_of(const workload *w) {
     return body;
 }
 
+/* A step under gravity along z */
+static inline gx_step_desc falling(double dt) {
+    gx_step_desc step;
+    memset(&step, 0, sizeof step);
+    step.dt = dt;
+    step.gravity[2] = -9.81;
+    return step;
+}
+
 /* A body in memory that may be made to run out */
 static inline gx_body *body_in(memory *m, const workload *w) {
     gx_body_desc desc = desc_of(w);

@@ -7,14 +7,6 @@
 #include <math.h>
 #include "body.h"
 
-static gx_step_desc falling(double dt) {
-    gx_step_desc step;
-    memset(&step, 0, sizeof step);
-    step.dt = dt;
-    step.gravity[2] = -9.81;
-    return step;
-}
-
 static gx_collider collider_of(uint32_t id, uint32_t kind, double a, double b, double c, double x, double y, double z) {
     gx_collider collider;
     int k;

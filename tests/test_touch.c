@@ -17,14 +17,6 @@ static void switch_on(gx_body *body, double friction) {
     ck_assert_int_eq(gx_body_contact(body, &desc, NULL), GX_OK);
 }
 
-static gx_step_desc falling(double dt) {
-    gx_step_desc step;
-    memset(&step, 0, sizeof step);
-    step.dt = dt;
-    step.gravity[2] = -9.81;
-    return step;
-}
-
 static gx_step_report take(gx_body *body, const gx_step_desc *step) {
     gx_step_report report;
     gx_failure failure;
