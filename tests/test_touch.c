@@ -136,16 +136,22 @@ static gx_body *cut_cube(workload *w, size_t n, const double normal[3], double h
 
 /* ---- the search ---- */
 
-/* Tries a facet without the quick tests of the search, and without a bound from others. */
+/* Tries a facet without the quick tests of the search, and without a bound from others. Those tests let through what is
+   met, whatever else is found: one that is a little further is the bound. */
 static void try_plainly(const gx_body *body, const gxp_touch_surface *s, double dt, uint32_t facet,
                         gxp_touch_pair *best) {
-    const uint32_t *corners = s->facets[facet].vertex;
-    const double *x = body->touch.moved + 9 * (size_t)best->sample, *n = body->touch.facing + 3 * (size_t)facet;
+    const gxp_touch *t = &body->touch;
+    const double *x = t->moved + 9 * (size_t)best->sample;
     gxp_touch_pair pair = gxp_no_pair(best->sample);
+    gxp_touch_leaf leaf;
     pair.facet = facet;
-    if (!(-(x[6] * n[0] + x[7] * n[1] + x[8] * n[2]) > 0.5)) return;
-    if (corners[0] == best->sample || corners[1] == best->sample || corners[2] == best->sample) return;
-    if (gxp_meets(body, s, dt, &pair) && pair.score < best->score) *best = pair;
+    if (!gxp_meets(body, s, dt, &pair)) return;
+    gxp_fit_leaf(t, s, facet / 4, &leaf);
+    ck_assert_uint_ne(gxp_facets_ahead(t, &leaf, &s->vertices[best->sample], x, dt,
+                                       gxp_pair_slack(s, &pair, gxp_touch_slack(t, &s->vertices[best->sample]))) &
+                          1u << facet % 4,
+                      0);
+    if (pair.score < best->score) *best = pair;
 }
 
 /* Random poses of random pieces: each vertex meets the same facet as by trying all. */
