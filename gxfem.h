@@ -17477,7 +17477,7 @@ static gx_result gxp_meet_bent(gx_body *body, gxp_cell_part *part, double low, d
     if (!gxp_place_in_bent(body, c, x, halved[1])) return GX_OK;
     for (k = 0; k < 4; k++) {
         off = fmax(off, fabs(halved[1][k] - 0.5 * w[0][k] - 0.5 * w[1][k]));
-        beyond |= fmax(fmax(w[0][k], w[1][k]), halved[1][k]) < -GXP_CHORD_OFF;
+        beyond |= w[0][k] < -GXP_CHORD_OFF && w[1][k] < -GXP_CHORD_OFF && halved[1][k] < -GXP_CHORD_OFF;
     }
     if (beyond && halves > 1) return GX_OK;
     if (off > GXP_CHORD_OFF && halves < GXP_CHORD_HALVES) {
