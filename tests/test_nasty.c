@@ -200,12 +200,12 @@ static void make_touching(nasty *n, int kind, wl_surface *s) {
         n->pieces = 1;
         break;
     case 12:
-        n->name = "on the grid's planes";
-        add_bar(s, 0, 0, 0, 16, 16, 4);
+        n->name = "on the grid's planes and nodes";
+        add_cubes(s, 4, 1, is_checker);
         add_bar(s, 0, 0, 8, 16, 16, 12);
         n->cells = 0;
         n->inner = 0;
-        n->pieces = 2;
+        n->pieces = 33;
         break;
     case 13:
         n->name = "far out";
