@@ -6423,7 +6423,7 @@ static gx_result gxp_integrate(gxp_cut *cut) {
     uint32_t i, before = GXP_NONE;
     gx_result result;
     gxp_prepare_points(body);
-    result = gxp_integrate_removed(cut);
+    result = cut->shapes ? GX_OK : gxp_integrate_removed(cut);
     scratch->narrow.count = 0;
     scratch->stamp++;
     for (i = 0; i < scratch->new_cells.count && result == GX_OK; i++) {
@@ -18196,6 +18196,7 @@ static void gxp_mark_face(gxp_grid *grid, const gxp_search *search, const double
     double x[3][4];
     int quarter, n, k;
     for (quarter = 0; quarter < 4; quarter++) {
+        if (*made >> (4 * axis + quarter) & 1) continue; /* another triangle meets it */
         gxp_grid_element(cube, axis, quarter, halves);
         for (n = 0; n < 4; n++)
             for (k = 0; k < 3; k++) x[k][n] = gxp_grid_at(grid, k, halves[n][k]);

@@ -1,4 +1,4 @@
-/* models.h - closed surfaces for tests: balls with waves, boxes; their exact moments, their areas */
+/* models.h - closed surfaces for tests: balls with waves, boxes, plates with holes; their exact moments, their areas */
 #ifndef GXFEM_TESTS_MODELS_H
 #define GXFEM_TESTS_MODELS_H
 
@@ -40,6 +40,41 @@ static inline void add_blob(wl_surface *s, const double place[3], double radius,
 static inline void add_bar(wl_surface *s, double x0, double y0, double z0, double x1, double y1, double z1) {
     const double low[3] = {x0, y0, z0}, high[3] = {x1, y1, z1};
     wl_add_aligned_box(s, low, high);
+}
+
+/* A plate of squares, with a hole in every other square of every other row: genus across x along */
+static inline void add_plate(wl_surface *s, int across, int along, double height) {
+    const int n[2] = {2 * across + 1, 2 * along + 1};
+    int i, j, level, k;
+    const uint32_t first = (uint32_t)s->vertex_count;
+#define PLATE_AT(i, j, l) (first + (uint32_t)(((l) * (n[1] + 1) + (j)) * (n[0] + 1) + (i)))
+#define PLATE_FULL(i, j)  ((i) >= 0 && (j) >= 0 && (i) < n[0] && (j) < n[1] && !((i) % 2 == 1 && (j) % 2 == 1))
+    for (level = 0; level < 2; level++)
+        for (j = 0; j <= n[1]; j++)
+            for (i = 0; i <= n[0]; i++) {
+                const double x[3] = {0.37 * i, 0.37 * j, level * height};
+                wl_add_vertex(s, x);
+            }
+    for (j = 0; j < n[1]; j++)
+        for (i = 0; i < n[0]; i++) {
+            static const int step[4][2] = {{0, -1}, {1, 0}, {0, 1}, {-1, 0}};
+            static const int side[4][4] = {{0, 0, 1, 0}, {1, 0, 1, 1}, {1, 1, 0, 1}, {0, 1, 0, 0}};
+            if (!PLATE_FULL(i, j)) continue;
+            wl_add_triangle(s, PLATE_AT(i, j, 0), PLATE_AT(i, j + 1, 0), PLATE_AT(i + 1, j + 1, 0));
+            wl_add_triangle(s, PLATE_AT(i, j, 0), PLATE_AT(i + 1, j + 1, 0), PLATE_AT(i + 1, j, 0));
+            wl_add_triangle(s, PLATE_AT(i, j, 1), PLATE_AT(i + 1, j + 1, 1), PLATE_AT(i, j + 1, 1));
+            wl_add_triangle(s, PLATE_AT(i, j, 1), PLATE_AT(i + 1, j, 1), PLATE_AT(i + 1, j + 1, 1));
+            for (k = 0; k < 4; k++) {
+                const int *e = side[k];
+                if (PLATE_FULL(i + step[k][0], j + step[k][1])) continue;
+                wl_add_triangle(s, PLATE_AT(i + e[0], j + e[1], 0), PLATE_AT(i + e[2], j + e[3], 0),
+                                PLATE_AT(i + e[2], j + e[3], 1));
+                wl_add_triangle(s, PLATE_AT(i + e[0], j + e[1], 0), PLATE_AT(i + e[2], j + e[3], 1),
+                                PLATE_AT(i + e[0], j + e[1], 1));
+            }
+        }
+#undef PLATE_AT
+#undef PLATE_FULL
 }
 
 /* ---- exact moments of a surface, by the divergence theorem ---- */

@@ -43,41 +43,6 @@ static gx_body *shaped(const workload *w, uint32_t cells) {
     return body;
 }
 
-/* A plate of unit squares with a square hole in every other one of every other row: genus holes x holes */
-static void add_plate(wl_surface *s, int holes, double height) {
-    const int n = 2 * holes + 1;
-    int i, j, level, k;
-    const uint32_t first = (uint32_t)s->vertex_count;
-#define PLATE_AT(i, j, l) (first + (uint32_t)(((l) * (n + 1) + (j)) * (n + 1) + (i)))
-#define PLATE_FULL(i, j)  ((i) >= 0 && (j) >= 0 && (i) < n && (j) < n && !((i) % 2 == 1 && (j) % 2 == 1))
-    for (level = 0; level < 2; level++)
-        for (j = 0; j <= n; j++)
-            for (i = 0; i <= n; i++) {
-                const double x[3] = {0.37 * i, 0.37 * j, level * height};
-                wl_add_vertex(s, x);
-            }
-    for (j = 0; j < n; j++)
-        for (i = 0; i < n; i++) {
-            static const int step[4][2] = {{0, -1}, {1, 0}, {0, 1}, {-1, 0}};
-            static const int side[4][4] = {{0, 0, 1, 0}, {1, 0, 1, 1}, {1, 1, 0, 1}, {0, 1, 0, 0}};
-            if (!PLATE_FULL(i, j)) continue;
-            wl_add_triangle(s, PLATE_AT(i, j, 0), PLATE_AT(i, j + 1, 0), PLATE_AT(i + 1, j + 1, 0));
-            wl_add_triangle(s, PLATE_AT(i, j, 0), PLATE_AT(i + 1, j + 1, 0), PLATE_AT(i + 1, j, 0));
-            wl_add_triangle(s, PLATE_AT(i, j, 1), PLATE_AT(i + 1, j + 1, 1), PLATE_AT(i, j + 1, 1));
-            wl_add_triangle(s, PLATE_AT(i, j, 1), PLATE_AT(i + 1, j, 1), PLATE_AT(i + 1, j + 1, 1));
-            for (k = 0; k < 4; k++) {
-                const int *e = side[k];
-                if (PLATE_FULL(i + step[k][0], j + step[k][1])) continue;
-                wl_add_triangle(s, PLATE_AT(i + e[0], j + e[1], 0), PLATE_AT(i + e[2], j + e[3], 0),
-                                PLATE_AT(i + e[2], j + e[3], 1));
-                wl_add_triangle(s, PLATE_AT(i + e[0], j + e[1], 0), PLATE_AT(i + e[2], j + e[3], 1),
-                                PLATE_AT(i + e[0], j + e[1], 1));
-            }
-        }
-#undef PLATE_AT
-#undef PLATE_FULL
-}
-
 enum { SHAPES = 12 };
 
 /* Surfaces whose winding numbers are 0 and 1, so that their own moments are the body's */
@@ -90,7 +55,7 @@ static workload some_shape(int kind) {
     case 0: add_blob(s, middle, 1, 0, 0, 12, 0); break;
     case 1: add_blob(s, middle, 0.8, 3, 0.35, 24, 0); break;
     case 2: add_blob(s, far, 0.8, 4, 0.3, 16, 0); break;
-    case 3: add_plate(s, 5, 0.2); break;
+    case 3: add_plate(s, 5, 5, 0.2); break;
     case 4: /* faces at the grid's own planes */ add_bar(s, 0, 0, 0, 1, 0.5, 0.25); break;
     case 5: /* thin ears */
         add_blob(s, middle, 0.5, 0, 0, 10, 0);
