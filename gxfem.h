@@ -10191,14 +10191,12 @@ static gx_result gxp_update_skin(gx_body *body, const gx_skin_desc *desc) {
     gxp_skin *s = &body->skin;
     const int all = !s->made || desc->crease_angle < s->desc.crease_angle ||
                     desc->crease_angle > s->desc.crease_angle || desc->smooth_cuts != s->desc.smooth_cuts;
-    int touched; /* if nothing is, fragments have kept their triangles */
     gx_result result;
     s->made = 0;
     s->range_count[0] = s->range_count[1] = 0;
     result = all ? gxp_restart_skin(body, desc) : gxp_spread_touched(body);
-    touched = s->dirty.count > 0;
     if (result == GX_OK) result = gxp_remake_elements(body);
-    if (result == GX_OK && touched) result = gxp_mark_fragments(body);
+    if (result == GX_OK) result = gxp_mark_fragments(body);
     if (result == GX_OK) result = gxp_make_ranges(body, 0, s->vertex_count);
     if (result == GX_OK) result = gxp_make_ranges(body, 1, s->triangle_count);
     if (result == GX_OK)
