@@ -392,7 +392,7 @@ static void some_steps(gx_body *body, int count) {
 
 static gx_body *loaded(gx_body *body) {
     gx_body *other = NULL;
-    size_t size;
+    size_t size = 0;
     void *bytes;
     ck_assert_int_eq(gx_body_save(body, NULL, 0, &size, NULL), GX_OK);
     bytes = oracle_memory(NULL, size, 1);
