@@ -547,7 +547,7 @@ static workload crossing(int kind) {
             for (i = 0; i < 4; i++)
                 for (j = 0; j < 3; j++) x[i][j] = random_real(-1, 1);
             add_tetrahedron(s, (const double(*)[3])x);
-            for (i = 0; i < 4 && k % 2; i++) { /* inside out: nothing is wound around where one of either kind overlap */
+            for (i = 0; i < 4 && k % 2; i++) { /* inside out: nothing is wound around both */
                 t = s->triangles + 3 * (s->triangle_count - 4 + i);
                 swap = t[1];
                 t[1] = t[2];
