@@ -6423,7 +6423,7 @@ static gx_result gxp_integrate(gxp_cut *cut) {
     uint32_t i, before = GXP_NONE;
     gx_result result;
     gxp_prepare_points(body);
-    result = cut->shapes ? GX_OK : gxp_integrate_removed(cut);
+    result = cut->shapes ? GX_OK : gxp_integrate_removed(cut); /* nobody asks what a shape's grid loses */
     scratch->narrow.count = 0;
     scratch->stamp++;
     for (i = 0; i < scratch->new_cells.count && result == GX_OK; i++) {
