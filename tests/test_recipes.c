@@ -79,6 +79,8 @@ START_TEST(model) {
     static const double x[36] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1,
                                  1, 1, 1, 0, 1, 1, 0, 1, 0, 0, 0, 0, 0, 0, 1, 0, 1, 1};
     float texture[24];
+    double moved[36];
+    gx_hit hits[12];
     gx_body *body = NULL;
     gx_failure failure;
     gx_skin skin;
@@ -98,7 +100,26 @@ START_TEST(model) {
             for (k = 0; k < 2; k++)
                 ck_assert(fabs((double)skin.vertex_texture[2 * i + (size_t)k] -
                                skin.vertex_rest[3 * i + (size_t)k + 1] - 10) < 1e-5);
+    OK(find_vertices(body, x, 12, hits));
     advance(body, 3);
+    OK(gx_body_skin(body, NULL, &skin, NULL));
+    OK(move_vertices(body, x, 12, hits, moved));
+    view = view_of(body);
+    for (i = 0; i < 12; i++) { /* where the skin has them */
+        size_t v, c, found = 0;
+        for (v = 0; v < skin.vertex_count; v++) {
+            const uint32_t *copies = skin.vertex_copies + v * skin.vertex_width;
+            const double *weights = skin.vertex_weights + v * skin.vertex_width;
+            if (memcmp(skin.vertex_rest + 3 * v, x + 3 * i, 3 * sizeof *x) != 0) continue;
+            found++;
+            for (k = 0; k < 3; k++) {
+                double at = x[3 * i + (size_t)k];
+                for (c = 0; c < skin.vertex_width; c++) at += weights[c] * view.displacement[3 * copies[c] + (size_t)k];
+                ck_assert(fabs(moved[3 * i + (size_t)k] - at) < 1e-14);
+            }
+        }
+        ck_assert(found > 0 && moved[3 * i + 2] < x[3 * i + 2]);
+    }
     cut_through(body, 2, 0.4711);
     OK(gx_body_skin(body, NULL, &skin, NULL));
     for (i = k = 0; i < skin.triangle_count; i++) k += skin.triangle_surface[i] == 2;
