@@ -16,6 +16,7 @@ let lib = null;          /* exports of the module */
 let made = false;        /* there is a body */
 let mesh = true;         /* the page lacks the present triangles */
 let waiting = false;     /* the page has not shown the last frame */
+let moved = false;       /* something is different from there */
 let paused = false, gravity = 9.81;
 let owed = 0, steps = 0; /* to be taken while paused; taken since the body is there */
 const strokes = [];      /* edges that are to be moved through the body */
@@ -139,7 +140,7 @@ function show() {
     if (mesh)
         frame.mesh = {triangles: copy(Uint32Array, lib.jelly_triangles(), 3 * count), fragments: fragments(count),
                       surfaces: copy(Uint32Array, lib.jelly_surfaces(), count)};
-    mesh = false;
+    mesh = moved = false;
     lib.jelly_ids();
     const [pieces, elements, unknowns] = numbers();
     postMessage({frame, numbers: {fragments: pieces, elements, unknowns, steps, step: times.step, cut: times.cut,
@@ -152,15 +153,17 @@ function show() {
 function tick() {
     const begin = performance.now();
     if (made) {
+        moved = moved || strokes.length > 0 || mesh;
         while (strokes.length > 0) stroke(strokes.shift());
         if (!paused || owed > 0) {
             const stepping = performance.now();
             owed = Math.max(owed - 1, 0);
             numbers().set([1 / 60, gravity]);
             if (good(lib.jelly_step())) steps++;
+            moved = true;
             times.step = performance.now() - stepping;
         }
-        if (!waiting) show();
+        if (moved && !waiting) show();
     }
     setTimeout(tick, Math.max(0, 1000 / 60 - (performance.now() - begin)));
 }
