@@ -6423,7 +6423,7 @@ static gx_result gxp_integrate(gxp_cut *cut) {
     uint32_t i, before = GXP_NONE;
     gx_result result;
     gxp_prepare_points(body);
-    result = cut->shapes ? GX_OK : gxp_integrate_removed(cut);
+    result = cut->shapes ? GX_OK : gxp_integrate_removed(cut); /* nobody asks what a shape's grid loses */
     scratch->narrow.count = 0;
     scratch->stamp++;
     for (i = 0; i < scratch->new_cells.count && result == GX_OK; i++) {
@@ -10191,14 +10191,12 @@ static gx_result gxp_update_skin(gx_body *body, const gx_skin_desc *desc) {
     gxp_skin *s = &body->skin;
     const int all = !s->made || desc->crease_angle < s->desc.crease_angle ||
                     desc->crease_angle > s->desc.crease_angle || desc->smooth_cuts != s->desc.smooth_cuts;
-    int touched; /* if nothing is, fragments have kept their triangles */
     gx_result result;
     s->made = 0;
     s->range_count[0] = s->range_count[1] = 0;
     result = all ? gxp_restart_skin(body, desc) : gxp_spread_touched(body);
-    touched = s->dirty.count > 0;
     if (result == GX_OK) result = gxp_remake_elements(body);
-    if (result == GX_OK && touched) result = gxp_mark_fragments(body);
+    if (result == GX_OK) result = gxp_mark_fragments(body);
     if (result == GX_OK) result = gxp_make_ranges(body, 0, s->vertex_count);
     if (result == GX_OK) result = gxp_make_ranges(body, 1, s->triangle_count);
     if (result == GX_OK)

@@ -318,6 +318,7 @@ START_TEST(wild_fronts) {
         ck_assert_int_eq(gxp_push_point(s.body, &s.blade->corners, corner), GX_OK);
     }
     for (k = 0; k < 2; k++) ck_assert_int_eq(gxp_push(s.body, &s.blade->surface_starts, starts[k]), GX_OK);
+    for (k = 0; k < 4; k++) ck_assert_int_eq(gxp_push(s.body, &s.blade->scope, (uint32_t)k), GX_OK);
     ck_assert_int_eq(gxp_cut_surfaces(s.blade, GX_SURFACE_SHEET, &report, &failure),
                      _i == 0 ? GX_ERROR_NOT_FINITE : GX_ERROR_RANGE);
     ck_assert_str_eq(failure.field, "displacement");
