@@ -671,8 +671,8 @@ START_TEST(lips_meet) {
 END_TEST
 
 /* A blade goes the same way again, three times, in a body that moves meanwhile: at the end of the cut, samples and
-   facets with the same copies are next to each other, and next to nothing is left of the weights of their pairs. Without
-   what balances these, seeds 8 and 38 were refused. */
+   facets with the same copies are next to each other, and next to nothing is left of the weights of their pairs.
+   Without what balances these, seeds 8 and 38 were refused. */
 START_TEST(strokes_are_retraced) {
     const gx_region top = gx_region_half_space(2, 1, 3.9);
     const gx_step_desc step = falling(0.02);
