@@ -15206,6 +15206,9 @@ static gx_result gxp_see_edge(gx_blade *blade, uint32_t layer, const double *edg
 #define GXP_ON_SHEET 1e-6
 /* So far on the other side of the sheet does a track begin, in element sizes. */
 #define GXP_CROSSING 0.1
+/* In element sizes: how far apart places are on the way there from the front; at most how many there are */
+#define GXP_WAY      0.25
+#define GXP_WAY_MOST 16
 /* Triangles of the last strips that a layer remembers. */
 #define GXP_SHEET_TRIANGLES 400u
 
@@ -15748,11 +15751,47 @@ static gx_result gxp_list_crossings(gx_blade *blade) {
     return result;
 }
 
-/* Appends the crossing of a sample to blade.latest, unless it is not next to one that is ahead. */
-static gx_result gxp_push_crossing(gx_blade *blade, uint32_t index) {
+/* The corner of a front next to a place at index: the first one from there on, or back */
+static const gxp_front_vertex *gxp_corner_from(const gxp_front_list *front, uint32_t index, int back) {
+    while (index < front->count && front->data[index].soft) index += back ? UINT32_MAX : 1;
+    return index < front->count ? &front->data[index] : NULL;
+}
+
+/* Appends places of the way between a corner of the front, which is on the sheet's rim, and a crossing next to it, each
+   on the other side of the sheet: the strip ends along this way. A straight one may be in front of a sheet that bends,
+   and what is between the two would join its sides. */
+static gx_result gxp_push_way(gx_blade *blade, const gxp_front_vertex *corner, const gxp_front_vertex *crossing,
+                              int back) {
+    const double length = sqrt(gxp_square_distance(corner->rest, crossing->rest)), size = crossing->size,
+                 across = fmax(2 * blade->tolerance, GXP_CROSSING * size);
+    const double most = (length - GXP_CROSSING * size) / (GXP_WAY * size);
+    const uint32_t count = most > 0 ? (uint32_t)fmin(ceil(most), GXP_WAY_MOST) : 0;
+    uint32_t i;
+    int k;
+    gx_result result = GX_OK;
+    for (i = 0; i < count && result == GX_OK; i++) {
+        const double along = (GXP_CROSSING + GXP_WAY * (back ? i : count - 1 - i)) * size / length;
+        double nearest[3], way[3];
+        gxp_front_vertex v = *crossing;
+        for (k = 0; k < 3; k++) v.rest[k] = corner->rest[k] + along * (crossing->rest[k] - corner->rest[k]);
+        gxp_leave_sheet(&blade->sheet, v.rest, across, nearest, way);
+        for (k = 0; k < 3; k++) v.rest[k] = nearest[k] - across * crossing->ahead[k];
+        v.gap = 0;
+        result = gxp_push_vertex(blade->body, &blade->latest, &v);
+    }
+    return result;
+}
+
+/* Appends the crossing of a sample to blade.latest, after the way to it from the front, or before the way back there.
+   front: a place there, in blade.advanced */
+static gx_result gxp_push_crossing(gx_blade *blade, uint32_t index, uint32_t front, int back) {
+    const gxp_front_vertex *corner = gxp_corner_from(&blade->advanced, front, back);
     gxp_front_vertex v = blade->crossings.data[index];
+    gx_result result = GX_OK;
     v.gap = 0;
-    return blade->relations[index].ahead ? GX_OK : gxp_push_vertex(blade->body, &blade->latest, &v);
+    if (corner != NULL && back) result = gxp_push_way(blade, corner, &v, back);
+    if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->latest, &v);
+    return corner != NULL && !back && result == GX_OK ? gxp_push_way(blade, corner, &v, back) : result;
 }
 
 /* Inserts the crossings next to places that are ahead into blade.advanced: the strip up to the front goes on to where
@@ -15767,9 +15806,11 @@ static gx_result gxp_turn_front(gx_blade *blade) {
         if (!blade->relations[i].ahead) continue;
         while (!gxp_same_rest(&blade->advanced.data[n], v) && result == GX_OK)
             result = gxp_push_vertex(blade->body, &blade->latest, &blade->advanced.data[n++]);
-        if (i > 0 && !v[-1].gap && result == GX_OK) result = gxp_push_crossing(blade, i - 1);
+        if (i > 0 && !v[-1].gap && !blade->relations[i - 1].ahead && result == GX_OK)
+            result = gxp_push_crossing(blade, i - 1, n - 1, 1);
         if (result == GX_OK) result = gxp_push_vertex(blade->body, &blade->latest, &blade->advanced.data[n++]);
-        if (i + 1 < samples->count && !v->gap && result == GX_OK) result = gxp_push_crossing(blade, i + 1);
+        if (i + 1 < samples->count && !v->gap && !blade->relations[i + 1].ahead && result == GX_OK)
+            result = gxp_push_crossing(blade, i + 1, n, 0);
     }
     if (result == GX_OK)
         result = gxp_append_front(blade->body, &blade->latest, blade->advanced.data + n, blade->advanced.count - n);
@@ -20304,6 +20345,8 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_SPECK_TRIES
 #undef GXP_SECTION
 #undef GXP_CROSSING
+#undef GXP_WAY
+#undef GXP_WAY_MOST
 #undef GXP_SHEET_TRIANGLES
 #undef GXP_STRIP_REACH
 #undef GXP_TOUCH
