@@ -85,7 +85,7 @@ static const struct {
     uint32_t cells;
 } scenes_of_other_sizes[] = {{"retreat", 8}, {"retreat", 4}, {"slow", 4}, {"slow", 7}, {"arms", 6},
                              {"slit", 5},    {"side", 8},    {"held", 6}, {"side", 4}, {"side", 5},
-                             {"sawing", 8},  {"held", 7},    {"held", 9}};
+                             {"sawing", 8},  {"held", 7},    {"held", 9}, {"held", 10}};
 enum { OTHER_SIZES = sizeof scenes_of_other_sizes / sizeof *scenes_of_other_sizes };
 
 START_TEST(other_sizes) {
