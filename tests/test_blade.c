@@ -104,6 +104,27 @@ START_TEST(other_sizes) {
 }
 END_TEST
 
+/* The same as `held`, with the edge given from its other end */
+static void hold_reversed(stage *s) {
+    const double n = s->cells[0];
+    int k;
+    for (k = 0; k < 600 && s->view.fragment_count < 2; k++) {
+        const double x = n + 0.8 - (k > 100 ? (k - 100) * 0.05 : 0);
+        stage_step(s, 2 * s->swing * sin(0.05 * k), 0, -9.8);
+        stage_move(s, x, n + STAGE_FAR, 0.3 * n + 0.5, x, -STAGE_FAR, 0.3 * n);
+    }
+}
+
+START_TEST(held_from_the_other_end) {
+    const stage_scene scene = {"held", hold_reversed, 2, 6};
+    stage s;
+    memset(&s, 0, sizeof s);
+    stage_play(&s, &scene, 10, NULL);
+    check_fragments(&s, 2, 10);
+    stage_close(&s);
+}
+END_TEST
+
 /* ---- at rest ---- */
 
 typedef struct plane_pass {
@@ -1277,6 +1298,7 @@ int main(void) {
     const char *only = getenv("GXFEM_SEED");
     const int first = only ? atoi(only) - 1 : 0;
     tcase_add_loop_test(tests, scenes, 0, STAGE_SCENES);
+    tcase_add_test(tests, held_from_the_other_end);
     tcase_add_loop_test(tests, other_sizes, 0, FEWER > 1 ? OTHER_SIZES / 2 : OTHER_SIZES);
     tcase_add_loop_test(tests, swinging_passes, 0, FEWER > 1 ? 2 : 16);
     tcase_add_loop_test(tests, octopus, 0, 4);
