@@ -357,7 +357,7 @@ shapes() {
     done
     cat <<END
 $styles
-set multiplot layout 2,2 title "Ellipsoids of one material (above) and of two, free: how far they bend, and their lowest frequency   ($(where shapes))" font "sans,15"
+set multiplot layout 2,2 title "A free ellipsoid of one material (above) and of two: deflection and lowest frequency   ($(where shapes))" font "sans,15"
 set logscale xy; set grid back lc rgb "#dddddd"; set key bottom left samplen 1.5; set ylabel "error"; set yrange [2e-3:1]; set format y "10^{%L}"
 END
     for series in one two; do

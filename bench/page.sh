@@ -444,15 +444,15 @@ shapes_rows() {
         $1 == series { print "| " '"$2"' " |" }' "$tables/shapes.csv"
 }
 
-# A body carved out of a grid beside the fitted mesh of one material that has about as many unknowns: time for an unknown, as a multiple
+# A body carved out of a grid beside the MESH of one material that has about as many unknowns: time for an unknown, as a multiple
 shapes_ratio() {
-    awk -F, '
+    awk -F, -v mesh="$1" '
         $1 == "one" && $2 == "carved" { n[++count] = $6; time[count] = $9 / $6 }
-        $1 == "one" && $2 == "stuffed" { fitted[++fits] = $6; each[fits] = $9 / $6 }
+        $1 == "one" && $2 == mesh { fitted[++fits] = $6; each[fits] = $9 / $6 }
         END {
             for (i = 1; i <= count; i++) {
                 for (j = best = 1; j <= fits; j++) if ((fitted[j] / n[i] - 1) ^ 2 < (fitted[best] / n[i] - 1) ^ 2) best = j
-                printf("%s%.2f (%d unknowns)", i > 1 ? ", " : "", time[i] / each[best], n[i])
+                printf("%s%.2f", i > 1 ? ", " : "", time[i] / each[best])
             }
         }' "$tables/shapes.csv"
 }
@@ -482,7 +482,8 @@ both, so it is too stiff there. The mapped mesh fits the interface."
     echo
     echo "![errors of carved and fitted bodies by unknowns and by time](charts/shapes.svg)"
     echo
-    text "A step of the carved body takes, for each unknown, so many times that of the stuffed mesh with about as many: $(shapes_ratio)."
+    text "A step of the carved body takes, for each unknown, so many times that of the mapped mesh with about as many: \
+$(shapes_ratio mapped); of the stuffed one: $(shapes_ratio stuffed). Small carved bodies have more of their elements at the surface."
     echo
     text "Making a body of a bumpy ellipsoid, seconds of the processor, and the memory that it holds afterwards and at most."
     echo

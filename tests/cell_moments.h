@@ -1,5 +1,5 @@
-/* cell_moments.h - moments of a body's cells, by their mass matrices: what the solver's inertia is made of. Include after
-   the implementation of gxfem.h and models.h. */
+/* cell_moments.h - moments of a body's cells, by their mass matrices: what the solver's inertia is made of. Include
+   after the implementation of gxfem.h and models.h. */
 #ifndef GXFEM_TESTS_CELL_MOMENTS_H
 #define GXFEM_TESTS_CELL_MOMENTS_H
 

@@ -15,7 +15,7 @@ typedef struct nasty {
     workload w;
     workload parts;    /* solid: the material, + 16: what is taken away */
     double slack;      /* of lengths: far out, coordinates have fewer digits; else 0 */
-    uint32_t cells; /* 0: cubes of edge 1 */
+    uint32_t cells;    /* 0: cubes of edge 1 */
     int pieces, inner; /* pieces: 0: not told here; inner 1: faces within the material are not in the skin */
 } nasty;
 
@@ -97,7 +97,8 @@ static void add_spiral(wl_surface *s, int n, double thickness) {
         }
     for (i = 0; i < n; i++)
         for (c = 0; c < 4; c++) {
-            const uint32_t a = first + 4 * (uint32_t)i + (uint32_t)c, b = first + 4 * (uint32_t)i + (uint32_t)((c + 1) % 4);
+            const uint32_t a = first + 4 * (uint32_t)i + (uint32_t)c,
+                           b = first + 4 * (uint32_t)i + (uint32_t)((c + 1) % 4);
             wl_add_triangle(s, a, b + 4, b);
             wl_add_triangle(s, a, a + 4, b + 4);
         }
@@ -144,7 +145,8 @@ static void make_thin(nasty *n, int kind, wl_surface *s) {
         n->name = "slivers";
         add_blob(s, middle, 1, 0, 0, 4, 0);
         for (k = 0; k < 120; k++) {
-            const double z = 0.03 * k, x[4][3] = {{2, 0, z}, {3, 0, z + 0.001}, {2, 1e-4, z + 0.002}, {2.5, 1e-3, z + 0.01}};
+            const double z = 0.03 * k,
+                         x[4][3] = {{2, 0, z}, {3, 0, z + 0.001}, {2, 1e-4, z + 0.002}, {2.5, 1e-3, z + 0.01}};
             add_tetrahedron(s, x);
         }
         n->pieces = 121;
@@ -369,8 +371,8 @@ static double expect_moments(const nasty *n, const gx_body *body, uint32_t mater
         worst = fmax(worst, fabs(own.first[k] / densities[material] - exact.first[k]) / (exact.volume * size));
     for (k = 0; k < 6; k++)
         worst = fmax(worst, fabs(own.second[k] / densities[material] - exact.second[k]) / (exact.volume * size * size));
-    ck_assert_msg(worst <= 1e-13 + 1e-15 * n->slack / size, "%s, material %u: moments are off by %.2g", n->name, material,
-                  worst);
+    ck_assert_msg(worst <= 1e-13 + 1e-15 * n->slack / size, "%s, material %u: moments are off by %.2g", n->name,
+                  material, worst);
     return worst;
 }
 
@@ -426,7 +428,8 @@ static void expect_pieces(gx_body *body, const nasty *n, const gx_surface *sheet
     const gx_view view = view_of(body);
     const size_t count = boolean_volumes(&n->w, sheet, exact);
     size_t i;
-    ck_assert_msg(view.fragment_count == count, "%s: %zu fragments, should be %zu", n->name, view.fragment_count, count);
+    ck_assert_msg(view.fragment_count == count, "%s: %zu fragments, should be %zu", n->name, view.fragment_count,
+                  count);
     memcpy(own, view.fragment_volume, count * sizeof *own);
     qsort(own, count, sizeof *own, ascending);
     for (i = 0; i < count; i++)
@@ -502,7 +505,8 @@ static workload crossing(int kind) {
             for (i = 0; i < 4; i++)
                 for (j = 0; j < 3; j++) x[i][j] = random_real(-1, 1);
             add_tetrahedron(s, (const double(*)[3])x);
-            for (i = 0; i < 4 && k % 2; i++) { /* inside out: where one of either kind overlap, nothing is wound around */
+            for (i = 0; i < 4 && k % 2; i++) { /* inside out: where one of either kind overlap, nothing is wound around
+                                                */
                 t = s->triangles + 3 * (s->triangle_count - 4 + i);
                 swap = t[1];
                 t[1] = t[2];

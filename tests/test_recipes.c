@@ -114,8 +114,7 @@ START_TEST(model) {
             found++;
             for (k = 0; k < 3; k++) {
                 double at = x[3 * i + (size_t)k];
-                for (c = 0; c < skin.vertex_width; c++)
-                    at += weights[c] * view.displacement[3 * copies[c] + (size_t)k];
+                for (c = 0; c < skin.vertex_width; c++) at += weights[c] * view.displacement[3 * copies[c] + (size_t)k];
                 ck_assert(fabs(moved[3 * i + (size_t)k] - at) < 1e-14);
             }
         }
