@@ -461,7 +461,7 @@ shapes_ratio() {
 shapes_order() {
     awk -F, -v series="$1" -v column="$2" '
         $1 == series && $2 == "carved" { error[++n] = $column < 0 ? -$column : $column; cells[n] = $3 }
-        END { printf("%.1f", log(error[n - 2] / error[n]) / log(cells[n] / cells[n - 2])) }' "$tables/shapes.csv"
+        END { first = n > 2 ? n - 2 : 1; printf("%.1f", log(error[first] / error[n]) / log(cells[n] / cells[first])) }' "$tables/shapes.csv"
 }
 
 shapes_section() {
