@@ -837,12 +837,13 @@ GXFEM_API gx_blade *gx_body_blade(const gx_body *body, size_t index);
    each move until the blade is lifted, 2 or more; ends may be 10^12 elements away. scope: fragments that alone are cut,
    below gx_view.fragment_count; count 0: all. On an error body and blade are as they were. Errors: ARGUMENT (also:
    the first edge is inside the material and starts_inside is 0, index: point), INDEX, NOT_FINITE and RANGE (edge, or
-   "displacement", index: copy), LIMIT, MEMORY. */
+   "displacement", index: copy, or SIZE_MAX if the body is deformed so that a place of the edge has no material point in
+   doubles), LIMIT, MEMORY. */
 GXFEM_API gx_result gx_blade_move(gx_blade *blade, const double *edge, size_t point_count,
                                   const uint32_t *scope_fragments, size_t scope_fragment_count,
                                   gx_blade_report *report /* or NULL */, gx_failure *failure /* or NULL */);
 /* Cuts what waits, and forgets fronts and edge: the next move begins anew. Errors: ARGUMENT, NOT_FINITE and RANGE
-   ("displacement", index: copy), LIMIT, MEMORY. */
+   ("displacement", index: as for moves), LIMIT, MEMORY. */
 GXFEM_API gx_result gx_blade_lift(gx_blade *blade, gx_blade_report *report /* or NULL */,
                                   gx_failure *failure /* or NULL */);
 
@@ -866,7 +867,7 @@ GXFEM_API gx_result gx_blade_contacts(gx_blade *blade, gx_blade_contact *contact
    tool. tool: vertices in space, m; kind and scope_slots are not read. Its triangles are divided where elements
    are smaller.
    Errors: as gx_body_cut; a field of the tool reads "tool.vertices"; NOT_FINITE and RANGE also of "displacement"
-   (index: copy). */
+   (index: as for moves of blades). */
 GXFEM_API gx_result gx_body_carve(gx_body *body, const gx_surface *tool, gx_cut_report *report /* or NULL */,
                                   gx_failure *failure /* or NULL */);
 
@@ -6423,7 +6424,7 @@ static gx_result gxp_integrate(gxp_cut *cut) {
     uint32_t i, before = GXP_NONE;
     gx_result result;
     gxp_prepare_points(body);
-    result = cut->shapes ? GX_OK : gxp_integrate_removed(cut);
+    result = cut->shapes ? GX_OK : gxp_integrate_removed(cut); /* nobody asks what a shape's grid loses */
     scratch->narrow.count = 0;
     scratch->stamp++;
     for (i = 0; i < scratch->new_cells.count && result == GX_OK; i++) {
@@ -16906,8 +16907,11 @@ static gx_result gxp_cut_surfaces(gx_blade *blade, uint32_t kind, gx_blade_repor
     least.thickness = blade->tolerance;
     result = gxp_cut_body(body, &desc, kind == GX_SURFACE_SHEET ? &least : NULL, &report->cut, failure);
     if (result == GX_OK) return result;
-    gxp_end(failure, result);
-    return result == GX_ERROR_NOT_CLOSED ? gxp_fail(failure, result, "tool.triangles", SIZE_MAX) : result;
+    if (result == GX_ERROR_NOT_CLOSED) return gxp_fail(failure, result, "tool.triangles", SIZE_MAX);
+    /* edge and tool are in range: what takes their material points out of it is how the body is deformed */
+    if (result == GX_ERROR_NOT_FINITE || result == GX_ERROR_RANGE)
+        return gxp_fail(failure, result, "displacement", SIZE_MAX);
+    return gxp_end(failure, result);
 }
 
 /* Blames a point of a blade's first edge that is in the material, unless it may be. */
@@ -17472,7 +17476,7 @@ static gx_result gxp_meet_bent(gx_body *body, gxp_cell_part *part, double low, d
     if (!gxp_place_in_bent(body, c, x, halved[1])) return GX_OK;
     for (k = 0; k < 4; k++) {
         off = fmax(off, fabs(halved[1][k] - 0.5 * w[0][k] - 0.5 * w[1][k]));
-        beyond |= fmax(fmax(w[0][k], w[1][k]), halved[1][k]) < -GXP_CHORD_OFF;
+        beyond |= w[0][k] < -GXP_CHORD_OFF && w[1][k] < -GXP_CHORD_OFF && halved[1][k] < -GXP_CHORD_OFF;
     }
     if (beyond && halves > 1) return GX_OK;
     if (off > GXP_CHORD_OFF && halves < GXP_CHORD_HALVES) {

@@ -566,7 +566,8 @@ static const action nothing[] = {NULL}, with_a_blade[] = {blade_inside, NULL}, a
                     held_kinds[] = {hold_kinds, cut_sheet, NULL}, after_two[] = {cut_sheet, cut_part, look, NULL},
                     after_solid[] = {cut_solid, NULL}, after_a_ring[] = {cut_ring, NULL},
                     held[] = {hold, cut_sheet, step, NULL}, drawn[] = {cut_sheet, draw, NULL}, found[] = {locate, NULL},
-                    found_and_moved[] = {cut_sheet, locate_all, step, NULL}, cut_since[] = {locate_all, cut_all, NULL},
+                    found_and_moved[] = {cut_sheet, locate_all, step, NULL},
+                    cut_since[] = {locate_all, cut_sheet, NULL},
                     drawn_and_cut[] = {draw, cut_sheet, draw, cut_second_sheet, NULL};
 
 static void sweep_creation(void) {

@@ -7,7 +7,7 @@
 #include "models.h"
 #include "cell_moments.h"
 
-enum { NASTY = 20, MOST_PIECES = 4096, NASTY_MATERIALS = 3 };
+enum { NASTY = 20, NASTY_MATERIALS = 3 };
 
 /* Surface n gives material n. The regions of material come out of moments of closed surfaces, added or taken away. */
 typedef struct nasty {
@@ -376,67 +376,6 @@ static double expect_moments(const nasty *n, const gx_body *body, uint32_t mater
     return worst;
 }
 
-static double skin_area(gx_body *body, size_t *triangles) {
-    gx_skin skin = {0};
-    double area = 0;
-    size_t t;
-    ck_assert_int_eq(gx_body_skin(body, NULL, &skin, NULL), GX_OK);
-    for (t = 0; t < skin.triangle_count; t++)
-        area += triangle_area(skin.vertex_rest + 3 * skin.triangles[3 * t],
-                              skin.vertex_rest + 3 * skin.triangles[3 * t + 1],
-                              skin.vertex_rest + 3 * skin.triangles[3 * t + 2]);
-    *triangles = skin.triangle_count;
-    return area;
-}
-
-static int ascending(const void *a, const void *b) {
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-/* Volumes of the components of the union of the surfaces, or of that split by a sheet, ascending */
-static size_t boolean_volumes(const workload *w, const gx_surface *sheet, double *volumes) {
-    gxb_boolean *b = NULL;
-    gxb_boolean_result result;
-    gxb_components components;
-    size_t i;
-    ck_assert_int_eq(gxb_boolean_create(NULL, &b, NULL), GX_OK);
-    ck_assert_int_eq(gxb_boolean_set_fine(b, 1, NULL), GX_OK);
-    for (i = 0; i < w->surface_count + (sheet != NULL); i++) {
-        const gx_surface s = i < w->surface_count ? surface_of(&w->surfaces[i]) : *sheet;
-        gxb_operand operand;
-        memset(&operand, 0, sizeof operand);
-        operand.vertices = s.vertices;
-        operand.vertex_count = s.vertex_count;
-        operand.triangles = s.triangles;
-        operand.triangle_count = s.triangle_count;
-        operand.operation = i < w->surface_count ? GXB_UNION : GXB_SPLIT;
-        ck_assert_int_eq(gxb_boolean_add(b, &operand, NULL), GX_OK);
-    }
-    ck_assert_int_eq(gxb_boolean_evaluate(b, &result, NULL), GX_OK);
-    ck_assert_int_eq(gxb_boolean_components(b, &components, NULL), GX_OK);
-    ck_assert_uint_le(components.count, MOST_PIECES);
-    memcpy(volumes, components.volume, components.count * sizeof *volumes);
-    i = components.count;
-    gxb_boolean_destroy(b);
-    qsort(volumes, i, sizeof *volumes, ascending);
-    return i;
-}
-
-static void expect_pieces(gx_body *body, const nasty *n, const gx_surface *sheet) {
-    static double own[MOST_PIECES], exact[MOST_PIECES];
-    const gx_view view = view_of(body);
-    const size_t count = boolean_volumes(&n->w, sheet, exact);
-    size_t i;
-    ck_assert_msg(view.fragment_count == count, "%s: %zu fragments, should be %zu", n->name, view.fragment_count,
-                  count);
-    memcpy(own, view.fragment_volume, count * sizeof *own);
-    qsort(own, count, sizeof *own, ascending);
-    for (i = 0; i < count; i++)
-        ck_assert_msg(fabs(own[i] - exact[i]) <= 1e-10 * exact[i] + 1e-13 * view.volume,
-                      "%s: a piece has volume %.17g, should have %.17g", n->name, own[i], exact[i]);
-}
-
 /* Whole and in two: moments by material, pieces, the skin. GXFEM_PRINT=1 tells the errors. */
 START_TEST(models_that_meshers_fail_on) {
     nasty n = some_nasty(_i);
@@ -448,15 +387,15 @@ START_TEST(models_that_meshers_fail_on) {
     gx_failure failure;
     double worst = 0, area = 0, own, place[3];
     exact_moments all;
-    size_t i, triangles;
+    size_t i;
     uint32_t m;
     gx_result result = make_body(&n.w, n.cells, &body, &failure);
     ck_assert_msg(result == GX_OK, "%s: %s, %s %zu", n.name, gx_result_text(result), failure.field ? failure.field : "",
                   failure.index);
     for (m = 0; m < NASTY_MATERIALS; m++) worst = fmax(worst, expect_moments(&n, body, m));
     if (n.pieces > 0) ck_assert_uint_eq(view_of(body).fragment_count, (size_t)n.pieces);
-    expect_pieces(body, &n, NULL);
-    own = skin_area(body, &triangles);
+    expect_pieces(body, &n.w, NULL, n.name);
+    own = area_of_skin(body);
     for (i = 0; i < n.w.surface_count; i++) area += area_of(&n.w.surfaces[i]);
     if (!n.inner)
         ck_assert_msg(fabs(own - area) <= (1e-12 + 1e-15 * n.slack) * area, "%s: the skin is off by %.2g", n.name,
@@ -474,7 +413,7 @@ START_TEST(models_that_meshers_fail_on) {
     cut.surface_count = 1;
     ck_assert_int_eq(gx_body_cut(body, &cut, NULL, NULL), GX_OK);
     for (m = 0; m < NASTY_MATERIALS; m++) expect_moments(&n, body, m);
-    expect_pieces(body, &n, &sheet);
+    expect_pieces(body, &n.w, &sheet, n.name);
     gx_body_destroy(body);
     nasty_free(&n);
     wl_free(&plane);
@@ -505,8 +444,7 @@ static workload crossing(int kind) {
             for (i = 0; i < 4; i++)
                 for (j = 0; j < 3; j++) x[i][j] = random_real(-1, 1);
             add_tetrahedron(s, (const double(*)[3])x);
-            for (i = 0; i < 4 && k % 2; i++) { /* inside out: where one of either kind overlap, nothing is wound around
-                                                */
+            for (i = 0; i < 4 && k % 2; i++) { /* inside out: nothing is wound around both */
                 t = s->triangles + 3 * (s->triangle_count - 4 + i);
                 swap = t[1];
                 t[1] = t[2];
@@ -519,16 +457,13 @@ static workload crossing(int kind) {
 
 /* Material is where the winding number is not 0: at points taken at random, and in volume and pieces by Booleans. */
 START_TEST(surfaces_that_cross_themselves) {
-    nasty n;
+    workload w = crossing(_i);
+    const wl_surface *s = &w.surfaces[0];
     gx_body *body = NULL;
     size_t i, inside = 0;
-    memset(&n, 0, sizeof n);
-    n.name = "a surface that crosses itself";
-    n.w = crossing(_i);
-    ck_assert_int_eq(make_body(&n.w, 7, &body, NULL), GX_OK);
+    ck_assert_int_eq(make_body(&w, 7, &body, NULL), GX_OK);
     for (i = 0; i < 400; i++) {
         const double x[3] = {random_real(-1.2, 1.2), random_real(-1.2, 1.2), random_real(-1.2, 1.2)};
-        const wl_surface *s = &n.w.surfaces[0];
         int on;
         size_t count = 0;
         gx_hit hits[8];
@@ -538,9 +473,9 @@ START_TEST(surfaces_that_cross_themselves) {
         inside += winding != 0;
     }
     ck_assert(inside > 10);
-    expect_pieces(body, &n, NULL);
+    expect_pieces(body, &w, NULL, "a surface that crosses itself");
     gx_body_destroy(body);
-    wl_free(&n.w);
+    wl_free(&w);
 }
 END_TEST
 

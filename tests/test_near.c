@@ -303,6 +303,31 @@ START_TEST(wild_copies) {
 }
 END_TEST
 
+/* Fronts that a deformed body has taken beyond doubles, or out of range, blame how it is deformed; nothing is cut. */
+START_TEST(wild_fronts) {
+    static const double wild[2] = {NAN, 1e300};
+    static const uint32_t starts[2] = {0, 0};
+    stage s = open_block(2, 3);
+    const uint64_t state = gx_body_state_hash(s.body);
+    gx_blade_report report;
+    gx_failure failure;
+    int k;
+    memset(&report, 0, sizeof report);
+    for (k = 0; k < 3; k++) {
+        const double corner[3] = {k == 1 ? wild[_i] : 1, 0.7 * k, 1.3};
+        ck_assert_int_eq(gxp_push_point(s.body, &s.blade->corners, corner), GX_OK);
+    }
+    for (k = 0; k < 2; k++) ck_assert_int_eq(gxp_push(s.body, &s.blade->surface_starts, starts[k]), GX_OK);
+    for (k = 0; k < 4; k++) ck_assert_int_eq(gxp_push(s.body, &s.blade->scope, (uint32_t)k), GX_OK);
+    ck_assert_int_eq(gxp_cut_surfaces(s.blade, GX_SURFACE_SHEET, &report, &failure),
+                     _i == 0 ? GX_ERROR_NOT_FINITE : GX_ERROR_RANGE);
+    ck_assert_str_eq(failure.field, "displacement");
+    ck_assert(failure.index == SIZE_MAX && failure.surface == SIZE_MAX);
+    ck_assert(gx_body_state_hash(s.body) == state);
+    stage_close(&s);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("near");
     TCase *tests = tcase_create("near");
@@ -312,5 +337,6 @@ int main(void) {
     tcase_add_loop_test(tests, cells_around, only ? only : 0, only ? only + 1 : FEWER > 1 ? 2 : SEEDS);
     tcase_add_test(tests, loose_boxes);
     tcase_add_loop_test(tests, wild_copies, 0, 4);
+    tcase_add_loop_test(tests, wild_fronts, 0, 2);
     return run_suite(suite);
 }
