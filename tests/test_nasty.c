@@ -4,7 +4,7 @@
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
 #include "body.h"
-#include "models.h"
+#include "pieces.h"
 #include "cell_moments.h"
 
 enum { NASTY = 20, NASTY_MATERIALS = 3 };
