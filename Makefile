@@ -27,7 +27,7 @@ together := $(foreach group,1 2 solve boolean,$(if $(members_$(group)),together_
 programs := $(together) $(filter-out $(patsubst tests/%.c,%,$(of_gxfem) $(members_solve) $(members_boolean)),$(tests))
 linked_tests = $(patsubst tests/%.c,%,$(shell grep -l GXFEM_LINKED tests/test_*.c))
 examples = $(patsubst examples/%.c,%,$(sort $(wildcard examples/*.c)))
-scenes = $(filter-out embed gxcut gxboolean animation,$(examples))
+scenes = $(filter-out embed gxcut gxboolean,$(examples))
 linked_examples = $(filter-out embed,$(examples))
 compile = $(CC) -std=c99 -g $(WARNINGS) $(CFLAGS)
 linked = $(compile) -DGXFEM_LINKED
@@ -45,7 +45,8 @@ help:
 	@echo "make examples    builds $(examples) in $(BUILD)/"
 	@echo "make scenes      runs the scenes, writes docs/SCENES.md; SMALL=1: small ones, $(BUILD)/scenes/SCENES.md"
 	@echo "make pictures    renders the scenes into docs/pictures/; installs f3d and a virtual display where they are missing"
-	@echo "make animation   the README's animated picture, docs/pictures/cut.webp; installs Chromium, node and img2webp"
+	@echo "make animation   pictures of the page on which one slices: the README's, docs/pictures/cut.webp, and page_*.png;"
+	@echo "                 installs Chromium, node and img2webp"
 	@echo "make lint        house rules of the four headers"
 	@echo "make format      lays out all C files by .clang-format; installs clang-format where it is missing"
 	@echo "make compile     the headers by every compiler and standard there is, C and C++"
@@ -204,11 +205,10 @@ pictures: $(scenes:%=$(BUILD)/%)
 	@sh tests/install.sh pictures
 	@sh examples/pictures.sh $(BUILD) docs/pictures
 
-# The animated picture: a run as a page, its frames drawn by the player, then one file of them
-animation: $(BUILD)/animation
+# The page on which one slices, recorded
+animation: web
 	@sh tests/install.sh animation
-	@$(BUILD)/animation --quiet --format html --out $(BUILD)/animation.html
-	@node examples/animation.mjs $(BUILD)/animation.html $(BUILD)/frames docs/pictures/cut.webp
+	@node examples/animation.mjs $(BUILD)/web $(BUILD)/frames docs/pictures
 
 # ---- tests. Each runs in processes of its own (Check forks), so that a crash is one failed test.
 

@@ -1596,6 +1596,16 @@ typedef struct gxp_touch_box { /* over facets */
     gxp_bounds normals;        /* at the start */
 } gxp_touch_box;
 
+#define GXP_TOUCH_LEAF 4u /* facets in each leaf of the tree */
+
+typedef struct gxp_touch_leaf { /* what tells quickly which of its facets a sample cannot meet; 0 where it has none */
+    double normal[3][GXP_TOUCH_LEAF], height[GXP_TOUCH_LEAF]; /* in space; of the facet's plane along the normal */
+    /* Of each edge: a direction in the plane, away from the facet, of length 1 or 0; how far along it the edge is */
+    double out[3][3][GXP_TOUCH_LEAF], reach[3][GXP_TOUCH_LEAF];
+    double speed[3], spread; /* m/s: mean of the corners; how much those of one differ from it at most */
+    uint64_t fitted;         /* 1: it is of this step */
+} gxp_touch_leaf;
+
 typedef struct gxp_touch_crowd { /* samples that are sought together */
     gxp_touch_box own;
     double slack, ahead, beside; /* m: how far what they meet may be at most: behind it, in front of it, beside it */
@@ -1643,6 +1653,7 @@ typedef struct gxp_touch {
     double *moved;           /* vertices x 9: position and velocity in space, outward normal */
     double *facing;          /* facets x 3: normals in space, of length 1, or 0 */
     gxp_touch_box *boxes;    /* a complete binary tree over the facets, GXP_TOUCH_LEAF in each of its leaves */
+    gxp_touch_leaf *leaves;  /* of those that have facets */
     gxp_words sides;         /* pairs x gxp_pair_span: vectors of their points */
     double *weights;         /* likewise */
     double *slips, *forces;  /* all pairs of the step x 3 */
@@ -1653,15 +1664,15 @@ typedef struct gxp_touch {
     gxp_words roles;         /* of a surface's vertices: GXP_TOUCH_INSIDE ... */
     gxp_words ranked;        /* facets along a curve */
     gxp_words kept_leaves;   /* of these, those in reach of a sample */
-    double *passed;          /* near.count x 6: boxes of those leaves */
+    double *passed;          /* 6 x near.count, rounded up: boxes of those leaves */
     gxp_words crowd, near;   /* boxes that may hold what many samples meet; leaves that do what some of them meet */
     uint32_t leaf_count;     /* a power of two */
     uint32_t given;          /* pairs of the caller, which stand first */
     gxp_touch_event *events; /* of a call */
     uint32_t event_capacity;
     uint32_t found, kept; /* pairs of contact: of this step; of the last one that succeeded */
-    uint32_t passed_capacity, pair_capacity, moved_capacity, facing_capacity, box_capacity, weight_capacity,
-        slip_capacity, force_capacity;
+    uint32_t passed_capacity, pair_capacity, moved_capacity, facing_capacity, box_capacity, leaf_capacity,
+        weight_capacity, slip_capacity, force_capacity;
 } gxp_touch;
 #define GXP_TOUCH_COPIES 16u /* copies of a pair at most: those of a vertex and of a facet's corners */
 
@@ -1983,6 +1994,7 @@ static const gxp_column gxp_lists[] = {
     GXP_LIST(touch.facing, touch.facing_capacity, 3 * sizeof(double)),
     GXP_LIST(touch.events, touch.event_capacity, sizeof(gxp_touch_event)), GXP_WORDS(touch.touching),
     GXP_LIST(touch.boxes, touch.box_capacity, sizeof(gxp_touch_box)), GXP_WORDS(touch.sides),
+    GXP_LIST(touch.leaves, touch.leaf_capacity, sizeof(gxp_touch_leaf)),
     GXP_LIST(touch.weights, touch.weight_capacity, sizeof(double)),
     GXP_LIST(touch.slips, touch.slip_capacity, 3 * sizeof(double)),
     GXP_LIST(touch.forces, touch.force_capacity, 3 * sizeof(double)),
@@ -11827,7 +11839,6 @@ GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const do
 
 /* Where the surface bends by more, rad, each side has samples with a normal of its own. */
 #define GXP_TOUCH_CREASE 0.7
-#define GXP_TOUCH_LEAF   4u
 /* Samples: a cosine, from which on a surface or its rim counts as even; in sizes of an element, how far a vertex may be
    from the sample that takes its share of an even surface, and how large the shares of that one may become */
 #define GXP_TOUCH_EVEN  0.98
@@ -12685,6 +12696,9 @@ static int gxp_has_changed(const gxp_touch *t, uint32_t id) {
 #define GXP_TOUCH_SAME   0.25
 #define GXP_TOUCH_BEHIND 1e-9
 
+/* Of two numbers the greater one, as one instruction */
+#define GXP_MOST(a, b) ((a) > (b) ? (a) : (b))
+
 /* What the affine rate of a copy adds to the velocity of a material point along an axis; 0 where it has none */
 static double gxp_affine_speed(const gx_body *body, uint32_t copy, const double rest[3], int axis) {
     const double *x = body->mesh.positions + 3 * (size_t)body->copies.node[copy];
@@ -12758,13 +12772,6 @@ static double gxp_height_above(const double *x, const double *corner, const doub
     return n[0] * (x[0] - corner[0]) + n[1] * (x[1] - corner[1]) + n[2] * (x[2] - corner[2]);
 }
 
-/* The least and the most of three numbers */
-static void gxp_range_of(double a, double b, double c, double *low, double *high) {
-    const double least = a < b ? a : b, most = a < b ? b : a;
-    *low = least < c ? least : c;
-    *high = most > c ? most : c;
-}
-
 /* The speed at which a vertex comes nearer to a facet */
 static double gxp_approach_facet(const double *x, const double *const corner[3], const double n[3]) {
     double approach = 0;
@@ -12774,66 +12781,27 @@ static double gxp_approach_facet(const double *x, const double *const corner[3],
     return approach;
 }
 
-/* May a vertex meet a facet within the step, with a score of at most limit? The quick test before gxp_meets. */
-static int gxp_may_meet(const gxp_touch *t, const gxp_touch_surface *s, double dt, uint32_t vertex, uint32_t facet,
-                        double limit) {
-    const gxp_touch_facet *f = &s->facets[facet];
-    const double *x = t->moved + 9 * (size_t)vertex, *n = t->facing + 3 * (size_t)facet, *corner[3];
-    const double facing = -gxp_dot(x + 6, n), size = s->vertices[vertex].size, bit = 1e-9 * size;
-    double height, far, approach;
-    int i;
-    if (!(facing > GXP_TOUCH_FACING)) return 0;
-    height = gxp_height_above(x, t->moved + 9 * (size_t)f->vertex[0], n);
-    far = fabs(height) - bit;
-    if (!(height > -t->desc.depth * size - bit) || (far > 0 && far * far > limit)) return 0;
-    for (i = 0; i < 3; i++) {
-        if (f->vertex[i] == vertex) return 0;
-        corner[i] = t->moved + 9 * (size_t)f->vertex[i];
-    }
-    if (height < GXP_TOUCH_NEAR * size) return 1;
-    approach = gxp_approach_facet(x, corner, n);
-    return height - (approach > 0 ? dt * approach : 0) < GXP_TOUCH_NEAR * size + bit;
-}
-
-/* May the origin be so near a triangle, and so little beside it? The quick test before the nearest place is found. p:
-   its corners, n: its normal */
-static int gxp_may_be_near(double p[3][3], const double n[3], double near, double beside) {
-    const double a = gxp_dot(p[0], n), b = gxp_dot(p[1], n), c = gxp_dot(p[2], n);
-    double low, high, most;
-    int k, far = 0;
-    gxp_range_of(a, b, c, &low, &high);
-    most = high > -low ? high : -low;
-    beside += GXP_TOUCH_SLANT * most;
-    for (k = 0; k < 3; k++) {
-        gxp_range_of(p[0][k], p[1][k], p[2][k], &low, &high);
-        far |= (low > near) | (high < -near);
-        gxp_range_of(p[0][k] - a * n[k], p[1][k] - b * n[k], p[2][k] - c * n[k], &low, &high);
-        far |= (low > beside) | (high < -beside);
-    }
-    return !far;
-}
-
-/* Does a vertex meet a facet within the step, with a score of at most pair.score? pair: its vertex and facet are set;
-   receives all else. Where the two come near each other, the place is the one where the vertex will be when the gap is
-   closed. */
+/* Does a vertex meet a facet within the step? pair: its vertex and facet are set; receives all else. Where the two come
+   near each other, the place is the one where the vertex will be when the gap is closed. */
 static int gxp_meets(const gx_body *body, const gxp_touch_surface *s, double dt, gxp_touch_pair *pair) {
     const gxp_touch *t = &body->touch;
     const gxp_touch_vertex *v = &s->vertices[pair->sample];
     const gxp_touch_facet *f = &s->facets[pair->facet];
-    const double *x = t->moved + 9 * (size_t)pair->sample, *n = t->facing + 3 * (size_t)pair->facet;
-    const double facing = -gxp_dot(x + 6, n), bit = 1e-9 * v->size, *corner[3];
-    double p[3][3], y[3], d[3], height, time = 0, along, square, slack, near, reach;
+    const double *x = t->moved + 9 * (size_t)pair->sample, *n = t->facing + 3 * (size_t)pair->facet, *corner[3];
+    const double facing = -gxp_dot(x + 6, n);
+    double p[3][3], y[3], d[3], height, time = 0, along, square, slack, reach;
     int i, k;
-    for (i = 0; i < 3; i++) corner[i] = t->moved + 9 * (size_t)f->vertex[i];
+    if (!(facing > GXP_TOUCH_FACING)) return 0;
+    for (i = 0; i < 3; i++) {
+        if (f->vertex[i] == pair->sample) return 0;
+        corner[i] = t->moved + 9 * (size_t)f->vertex[i];
+    }
     height = gxp_height_above(x, corner[0], n);
     slack = height > 0 ? gxp_touch_ahead(v) : gxp_touch_slack(t, v);
     pair->approach = height > 0 ? gxp_approach_facet(x, corner, n) : 0;
     if (pair->approach > 0) time = height < dt * pair->approach ? height / pair->approach : dt;
     for (i = 0; i < 3; i++)
         for (k = 0; k < 3; k++) p[i][k] = corner[i][k] - x[k] + time * (corner[i][3 + k] - x[3 + k]);
-    near = sqrt(pair->score);
-    near = near < slack ? near : slack;
-    if (!gxp_may_be_near(p, n, near + bit, GXP_TOUCH_BESIDE * v->size + bit)) return 0;
     pair->share[0] = pair->share[1] = pair->share[2] = 0;
     (void)gxp_near_triangle(p, GXP_TREE_ALL, pair->share);
     for (k = 0; k < 3; k++) {
@@ -12864,11 +12832,9 @@ static int gxp_is_let(const gxp_touch *t, uint32_t fragment, uint32_t other, uin
 static void gxp_try_facet(const gx_body *body, const gxp_touch_surface *s, double dt, uint32_t facet,
                           gxp_touch_pair *best) {
     gxp_touch_pair pair;
-    if (!gxp_may_meet(&body->touch, s, dt, best->sample, facet, best->score)) return;
     if (!gxp_is_let(&body->touch, s->vertices[best->sample].fragment, s->facets[facet].fragment, GXP_NONE)) return;
     pair.sample = best->sample;
     pair.facet = facet;
-    pair.score = best->score;
     if (!gxp_meets(body, s, dt, &pair) || pair.score > best->score ||
         (!(pair.score < best->score) && facet > best->facet))
         return;
@@ -12891,7 +12857,7 @@ static void gxp_try_facet(const gx_body *body, const gxp_touch_surface *s, doubl
 
 /* Samples that are sought together, at most: those that leave out boxes together first, then those that list leaves
    together. With half or twice of either a step takes up to 4 % longer. A cosine: how alike they face at rest */
-enum { GXP_TOUCH_MANY = 64, GXP_TOUCH_FEW = 16 };
+enum { GXP_TOUCH_MANY = 128, GXP_TOUCH_FEW = 32 };
 #define GXP_TOUCH_ALIKE 0.7
 
 /* Adds a point or a direction to bounds. */
@@ -12909,11 +12875,67 @@ static void gxp_vertex_end(const double *moved, double dt, double end[3]) {
     for (k = 0; k < 3; k++) end[k] = moved[k] + dt * moved[3 + k];
 }
 
+/* The corners of a leaf's facets: their mean velocity, and how much those of one differ from it at most */
+static void gxp_fit_speed(const gxp_touch *t, const gxp_touch_surface *s, uint32_t leaf, gxp_touch_leaf *to) {
+    const uint32_t first = GXP_TOUCH_LEAF * leaf;
+    const uint32_t count = s->facet_count - first < GXP_TOUCH_LEAF ? s->facet_count - first : GXP_TOUCH_LEAF;
+    double most = 0;
+    uint32_t j, n;
+    int k;
+    for (k = 0; k < 3; k++) to->speed[k] = 0;
+    for (j = 0; j < count; j++)
+        for (n = 0; n < 3; n++)
+            for (k = 0; k < 3; k++)
+                to->speed[k] += t->moved[9 * (size_t)s->facets[first + j].vertex[n] + 3 + (size_t)k] / (3 * count);
+    for (j = 0; j < count; j++)
+        for (n = 0; n < 3; n++) {
+            const double square =
+                gxp_square_distance(t->moved + 9 * (size_t)s->facets[first + j].vertex[n] + 3, to->speed);
+            most = square > most ? square : most;
+        }
+    to->spread = sqrt(most);
+    to->fitted = 1;
+}
+
+/* Fits a leaf to its facets. */
+static void gxp_fit_leaf(const gxp_touch *t, const gxp_touch_surface *s, uint32_t leaf, gxp_touch_leaf *to) {
+    uint32_t j, n;
+    int k;
+    memset(to, 0, sizeof *to);
+    gxp_fit_speed(t, s, leaf, to);
+    for (j = 0; j < GXP_TOUCH_LEAF && GXP_TOUCH_LEAF * leaf + j < s->facet_count; j++) {
+        const size_t facet = GXP_TOUCH_LEAF * (size_t)leaf + j;
+        const double *unit = t->facing + 3 * facet, *x[3];
+        for (n = 0; n < 3; n++) x[n] = t->moved + 9 * (size_t)s->facets[facet].vertex[n];
+        for (k = 0; k < 3; k++) to->normal[k][j] = unit[k];
+        to->height[j] = gxp_dot(unit, x[0]);
+        for (n = 0; n < 3; n++) {
+            const double *from = x[n], *end = x[(n + 1) % 3];
+            const double edge[3] = {end[0] - from[0], end[1] - from[1], end[2] - from[2]};
+            double away[3], out[3] = {0, 0, 0};
+            gxp_cross(away, edge, unit);
+            (void)gxp_unit(away, out);
+            for (k = 0; k < 3; k++) to->out[n][k][j] = out[k];
+            to->reach[n][j] = gxp_dot(out, from);
+        }
+    }
+}
+
+/* Fits those leaves of touch.near that have not been fitted within this step. */
+static void gxp_fit_near(gxp_touch *t, const gxp_touch_surface *s) {
+    uint32_t i;
+    for (i = 0; i < t->near.count; i++) {
+        const uint32_t leaf = t->near.data[i] + 1 - t->leaf_count;
+        if (!t->leaves[leaf].fitted) gxp_fit_leaf(t, s, leaf, &t->leaves[leaf]);
+    }
+}
+
 /* Fits the boxes to the facets. */
 static void gxp_fit_facets(gx_body *body, const gxp_touch_surface *s, double dt) {
     gxp_touch *t = &body->touch;
     uint32_t i, j;
     int n;
+    for (i = 0; GXP_TOUCH_LEAF * i < s->facet_count; i++) t->leaves[i].fitted = 0;
     for (i = 2 * t->leaf_count - 1; i-- > 0;) {
         gxp_touch_box *box = &t->boxes[i];
         gxp_empty_bounds(&box->from);
@@ -12954,15 +12976,16 @@ static void gxp_range_product(double a, double b, double c, double d, double *lo
 static double gxp_box_gap(const gxp_touch_box *box, const gxp_touch_crowd *crowd, double limit) {
     const gxp_touch_box *own = &crowd->own;
     double low[3], high[3], square = 0, facing = 0, least = 0, most = 0, width;
-    int k;
+    int k, far = 0;
     for (k = 0; k < 3; k++) {
         const double left = box->from.low[k] - own->from.high[k], right = box->from.high[k] - own->from.low[k];
         const double left_end = box->to.low[k] - own->to.high[k], right_end = box->to.high[k] - own->to.low[k];
         double gap;
         low[k] = left < left_end ? left : left_end;
         high[k] = right > right_end ? right : right_end;
-        gap = low[k] > -high[k] ? low[k] : -high[k];
-        square += gap > 0 ? gap * gap : 0;
+        gap = GXP_MOST(low[k], -high[k]);
+        gap = GXP_MOST(gap, 0.0);
+        square += gap * gap;
     }
     if (square > limit) return GXP_TREE_BEYOND;
     for (k = 0; k < 3; k++) {
@@ -12984,9 +13007,9 @@ static double gxp_box_gap(const gxp_touch_box *box, const gxp_touch_crowd *crowd
     for (k = 0; k < 3; k++) {
         double one, other;
         gxp_range_product(least, most, box->normals.low[k], box->normals.high[k], &one, &other);
-        if (low[k] > other + width || high[k] < one - width) return GXP_TREE_BEYOND;
+        far |= (low[k] > other + width) | (high[k] < one - width);
     }
-    return square;
+    return far ? GXP_TREE_BEYOND : square;
 }
 
 /* Starts a crowd without samples. */
@@ -13055,45 +13078,96 @@ static double gxp_pair_slack(const gxp_touch_surface *s, const gxp_touch_pair *b
     return near < slack ? near : slack;
 }
 
+/* How many numbers touch.passed has for each side of the boxes */
+static size_t gxp_passed_stride(const gxp_touch *t) { return ((size_t)t->near.count + 3) / 4 * 4; }
+
 /* The boxes of touch.near from the step's start to its end, as a crowd sees them that moves by `shift` within the step:
-   touch.passed, low[3] and high[3], each of all boxes */
+   touch.passed, low[3] and high[3], each of all boxes; behind the last ones some that nothing reaches */
 static gx_result gxp_list_passed(gx_body *body, const double shift[3]) {
     gxp_touch *t = &body->touch;
-    const uint32_t n = t->near.count;
-    uint32_t i;
+    const size_t n = gxp_passed_stride(t);
+    size_t i;
     int k;
     const gx_result result =
-        gxp_reserve(&body->config.allocator, &t->passed, sizeof *t->passed, 0, &t->passed_capacity, 6 * (size_t)n);
+        gxp_reserve(&body->config.allocator, &t->passed, sizeof *t->passed, 0, &t->passed_capacity, 6 * n);
     for (i = 0; i < n && result == GX_OK; i++) {
-        const gxp_touch_box *box = &t->boxes[t->near.data[i]];
+        gxp_touch_box none;
+        const gxp_touch_box *box = i < t->near.count ? &t->boxes[t->near.data[i]] : &none;
+        if (box == &none) {
+            gxp_empty_bounds(&none.from);
+            gxp_empty_bounds(&none.to);
+        }
         for (k = 0; k < 3; k++) {
             const double low = box->to.low[k] - shift[k], high = box->to.high[k] - shift[k];
-            t->passed[(size_t)n * (size_t)k + i] = box->from.low[k] < low ? box->from.low[k] : low;
-            t->passed[(size_t)n * (size_t)(3 + k) + i] = box->from.high[k] > high ? box->from.high[k] : high;
+            t->passed[n * (size_t)k + i] = box->from.low[k] < low ? box->from.low[k] : low;
+            t->passed[n * (size_t)(3 + k) + i] = box->from.high[k] > high ? box->from.high[k] : high;
         }
     }
     return result;
 }
 
 /* Finds the leaves of touch.near that are within reach of a sample: `kept`. Returns how many */
-static uint32_t gxp_keep_leaves(const gxp_touch *t, const gxp_touch_box *own, const double shift[3], double reach,
+static uint32_t gxp_keep_leaves(const gxp_touch *t, const double *x, double dt, const double shift[3], double reach,
                                 uint32_t *kept) {
-    const uint32_t n = t->near.count;
-    const double *low = t->passed, *high = t->passed + 3 * (size_t)n;
+    const size_t n = gxp_passed_stride(t);
+    const double *side = t->passed;
     double from[3], to[3];
-    uint32_t i, count = 0;
+    uint32_t count = 0;
+    size_t i, j;
     int k;
     for (k = 0; k < 3; k++) {
-        const double end = own->to.low[k] - shift[k];
-        from[k] = (own->from.low[k] < end ? own->from.low[k] : end) - reach;
-        to[k] = (own->from.low[k] > end ? own->from.low[k] : end) + reach;
+        const double end = x[k] + dt * x[3 + k] - shift[k];
+        from[k] = (x[k] < end ? x[k] : end) - reach;
+        to[k] = (x[k] > end ? x[k] : end) + reach;
     }
-    for (i = 0; i < n; i++) {
-        kept[count] = t->near.data[i];
-        count += (uint32_t)((low[i] <= to[0]) & (low[n + i] <= to[1]) & (low[2 * n + i] <= to[2]) &
-                            (high[i] >= from[0]) & (high[n + i] >= from[1]) & (high[2 * n + i] >= from[2]));
+    for (i = 0; i < n; i += 4) {
+        double far[4];
+        for (j = 0; j < 4; j++) {
+            const double *low = side + i + j, *high = low + 3 * n;
+            const double a = GXP_MOST(low[0] - to[0], from[0] - high[0]),
+                         b = GXP_MOST(low[n] - to[1], from[1] - high[n]),
+                         c = GXP_MOST(low[2 * n] - to[2], from[2] - high[2 * n]), ab = GXP_MOST(a, b);
+            far[j] = GXP_MOST(ab, c);
+        }
+        for (j = 0; j < 4 && i + j < t->near.count; j++) {
+            kept[count] = t->near.data[i + j];
+            count += (uint32_t)(far[j] <= 0);
+        }
     }
     return count;
+}
+
+/* Which facets of a leaf may a sample meet within the step, as bits, if none is further than `near`? A facet that it
+   meets faces it; the height over the facet's plane is in bounds; and the sample is hardly beside the facet. What is in
+   front of a facet moves before they meet, relative to the facet. */
+static uint32_t gxp_facets_ahead(const gxp_touch *t, const gxp_touch_leaf *leaf, const gxp_touch_vertex *v,
+                                 const double *x, double dt, double near) {
+    const double bit = 1e-9 * v->size, depth = t->desc.depth * v->size + bit, ahead = GXP_TOUCH_NEAR * v->size + bit;
+    const double spread = dt * leaf->spread, beside = GXP_TOUCH_BESIDE * v->size + bit;
+    const double way[3] = {dt * (leaf->speed[0] - x[3]), dt * (leaf->speed[1] - x[4]), dt * (leaf->speed[2] - x[5])};
+    double far[GXP_TOUCH_LEAF], height[GXP_TOUCH_LEAF], wide[GXP_TOUCH_LEAF];
+    uint32_t n, j, bits = 0;
+    for (j = 0; j < GXP_TOUCH_LEAF; j++) { /* compilers make vectors of these loops if they are as plain as that */
+        const double a = leaf->normal[0][j], b = leaf->normal[1][j], c = leaf->normal[2][j];
+        const double facing = a * x[6] + b * x[7] + c * x[8] + GXP_TOUCH_FACING * (1 - 1e-9);
+        const double h = a * x[0] + b * x[1] + c * x[2] - leaf->height[j], off = fabs(h);
+        const double end = h - (a * way[0] + b * way[1] + c * way[2] + spread);
+        const double least = (h < end ? h : end) - ahead, one = GXP_MOST(facing, least);
+        const double behind = -h - depth, beyond = off - near, other = GXP_MOST(behind, beyond);
+        far[j] = GXP_MOST(one, other);
+        height[j] = h;
+        wide[j] = beside + GXP_TOUCH_SLANT * off;
+    }
+    for (n = 0; n < 3; n++)
+        for (j = 0; j < GXP_TOUCH_LEAF; j++) {
+            const double a = leaf->out[n][0][j], b = leaf->out[n][1][j], c = leaf->out[n][2][j];
+            const double out = a * x[0] + b * x[1] + c * x[2] - leaf->reach[n][j] - wide[j];
+            const double end = out - (a * way[0] + b * way[1] + c * way[2] + (1 + GXP_TOUCH_SLANT) * spread);
+            const double least = end < out ? end : out, now = height[j] > 0 ? least : out;
+            far[j] = GXP_MOST(far[j], now);
+        }
+    for (j = 0; j < GXP_TOUCH_LEAF; j++) bits |= (uint32_t)(far[j] <= 0) << j;
+    return bits;
 }
 
 /* Finds the facet that a vertex meets among those of touch.near. best: its vertex, and a facet that it meets or
@@ -13101,17 +13175,19 @@ static uint32_t gxp_keep_leaves(const gxp_touch *t, const gxp_touch_box *own, co
 static void gxp_seek_facet(const gx_body *body, const gxp_touch_surface *s, double dt, const double shift[3],
                            gxp_touch_pair *best) {
     const gxp_touch *t = &body->touch;
-    uint32_t *kept = t->kept_leaves.data, count, i, j;
-    gxp_touch_crowd crowd;
-    gxp_start_crowd(&crowd);
-    gxp_join_crowd(t, s, dt, best->sample, &crowd);
-    count = gxp_keep_leaves(t, &crowd.own, shift, gxp_pair_slack(s, best, crowd.slack) + 1e-9 * crowd.size, kept);
+    const gxp_touch_vertex *v = &s->vertices[best->sample];
+    const double *x = t->moved + 9 * (size_t)best->sample, slack = gxp_touch_slack(t, v) * (1 + 1e-9);
+    double near = gxp_pair_slack(s, best, slack);
+    uint32_t *kept = t->kept_leaves.data, i, bits, facet;
+    const uint32_t count = gxp_keep_leaves(t, x, dt, shift, near + 1e-9 * v->size, kept);
     for (i = 0; i < count; i++) {
-        const double slack = gxp_pair_slack(s, best, crowd.slack), limit = slack * slack;
         const uint32_t leaf = kept[i] + 1 - t->leaf_count;
-        if (gxp_box_gap(&t->boxes[kept[i]], &crowd, limit) > limit) continue;
-        for (j = GXP_TOUCH_LEAF * leaf; j < GXP_TOUCH_LEAF * (leaf + 1) && j < s->facet_count; j++)
-            gxp_try_facet(body, s, dt, j, best);
+        bits = gxp_facets_ahead(t, &t->leaves[leaf], v, x, dt, near);
+        for (facet = GXP_TOUCH_LEAF * leaf; bits > 0; bits >>= 1, facet++)
+            if (bits & 1 && facet != best->facet) {
+                gxp_try_facet(body, s, dt, facet, best);
+                near = gxp_pair_slack(s, best, slack);
+            }
     }
 }
 
@@ -13140,6 +13216,7 @@ static gx_result gxp_seek_few(gx_body *body, const gxp_touch_surface *s, double 
         shift[k] = 0.5 * (crowd.own.to.low[k] + crowd.own.to.high[k] - crowd.own.from.low[k] - crowd.own.from.high[k]);
     if (result == GX_OK) result = gxp_start_words(body, &t->kept_leaves, t->near.count + 1);
     if (result == GX_OK) result = gxp_list_passed(body, shift);
+    if (result == GX_OK) gxp_fit_near(t, s);
     for (i = 0; i < count && result == GX_OK; i++) {
         if (t->near.count > 0) gxp_seek_facet(body, s, dt, shift, &best[i]);
         s->guesses.data[samples[i]] = best[i].facet;
@@ -13309,9 +13386,9 @@ static gx_result gxp_seek_pairs(gx_body *body, const gxp_touch_surface *s, doubl
     t->found = 0;
     if (result == GX_OK) result = gxp_end(failure, gxp_seek_facets(body, s, dt));
     for (i = 0; i < s->vertex_count && result == GX_OK && s->facet_count > 0; i++) {
-        gxp_touch_pair pair = gxp_no_pair(i);
-        pair.facet = s->guesses.data[i];
-        if (pair.facet != GXP_NONE) {
+        if (s->guesses.data[i] != GXP_NONE) {
+            gxp_touch_pair pair = gxp_no_pair(i);
+            pair.facet = s->guesses.data[i];
             (void)gxp_meets(body, s, dt, &pair); /* as it was found */
             result = gxp_list_pair(body, s, &pair, failure);
         }
@@ -13335,7 +13412,10 @@ static gx_result gxp_surface_room(gx_body *body, const gxp_touch_surface *s) {
     for (t->leaf_count = 1; GXP_TOUCH_LEAF * (size_t)t->leaf_count < s->facet_count;) t->leaf_count *= 2;
     if (result == GX_OK)
         result = gxp_reserve(a, &t->facing, 3 * sizeof(double), 0, &t->facing_capacity, s->facet_count);
-    return result == GX_OK ? gxp_reserve(a, &t->boxes, sizeof *t->boxes, 0, &t->box_capacity, 2 * t->leaf_count)
+    if (result == GX_OK)
+        result = gxp_reserve(a, &t->boxes, sizeof *t->boxes, 0, &t->box_capacity, 2 * (size_t)t->leaf_count);
+    return result == GX_OK ? gxp_reserve(a, &t->leaves, sizeof *t->leaves, 0, &t->leaf_capacity,
+                                         ((size_t)s->facet_count + GXP_TOUCH_LEAF - 1) / GXP_TOUCH_LEAF)
                            : result;
 }
 
@@ -13366,6 +13446,21 @@ static void gxp_add_place(const gx_body *body, const gxp_touch_vertex *v, double
     }
 }
 
+/* Weights of a pair's copies are 0 in sum but for rounding. Where both sides have the same copies most of the weights
+   cancels, and the rounding of what was there may be more than the solver takes, 1e-12 of the sizes' sum: then a copy
+   takes it. Weights of hidden vectors, which come behind the copies, have any sum. */
+static void gxp_balance(const gx_body *body, const gxs_point *point, const uint32_t *copies, double *weights,
+                        double size) {
+    double sum = 0;
+    uint32_t m, largest = 0;
+    for (m = 0; m < point->count; m++) {
+        if (copies[m] >= body->copies.count) continue;
+        sum += weights[m];
+        if (copies[largest] >= body->copies.count || fabs(weights[m]) > fabs(weights[largest])) largest = m;
+    }
+    if (fabs(sum) > 5e-13 * size) weights[largest] -= sum;
+}
+
 /* The point of a pair: its sample, relative to the place on the facet, or to that of the collider at the step's end.
    Returns 0 if nothing moves it. */
 static int gxp_meeting_point(const gx_body *body, const gxp_touch_surface *s, const gxp_touch_pair *pair,
@@ -13387,6 +13482,7 @@ static int gxp_meeting_point(const gx_body *body, const gxp_touch_surface *s, co
     for (k = 0; k < 3; k++) point->position[k] -= pair->place[k] + pair->way[k];
     for (m = 0; m < point->count; m++) moves += fabs(weights[m]);
     for (m = 0; m < point->count && !(moves > 1e-9); m++) weights[m] = 0; /* it was rounding */
+    if (pair->facet != GXP_NONE) gxp_balance(body, point, copies, weights, moves);
     point->copies = copies;
     point->weights = weights;
     return moves > 1e-9;
@@ -20134,6 +20230,7 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_SEARCH_MARGIN
 #undef GXP_TOUCH_CREASE
 #undef GXP_TOUCH_LEAF
+#undef GXP_MOST
 #undef GXP_TOUCH_EVEN
 #undef GXP_TOUCH_APART
 #undef GXP_TOUCH_SHARE

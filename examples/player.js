@@ -204,10 +204,14 @@ layout(location = 2) in vec4 colour;
 uniform mat4 matrix;
 uniform mat3 axes; /* columns: right, above, back */
 uniform float lift; /* towards the camera, so that lines lie on their faces */
+uniform vec4 ground; /* up, and how high it is */
+uniform bool shadow; /* straight below each point, on the ground */
 out vec3 n;
+out vec3 p;
 out vec4 c;
 void main() {
-    gl_Position = matrix * vec4(position, 1.0);
+    p = shadow ? position - ground.xyz * (dot(ground.xyz, position) - ground.w) : position;
+    gl_Position = matrix * vec4(p, 1.0);
     gl_Position.z -= lift * gl_Position.w;
     n = normalize(normal) * axes;
     c = colour;
@@ -218,12 +222,18 @@ void main() {
 const gxFragmentShader = `#version 300 es
 precision highp float;
 in vec3 n;
+in vec3 p;
 in vec4 c;
-uniform vec4 line; /* alpha 0: faces; else lines of this colour */
+uniform vec4 line; /* alpha 0: faces; else all is of this colour */
+uniform vec4 fade; /* where it is of full strength, and how far from there it has none; 0: it never fades */
 uniform bool flatly;
 out vec4 pixel;
 void main() {
-    if (line.a > 0.0) { pixel = line; return; }
+    if (line.a > 0.0) {
+        float left = fade.w > 0.0 ? max(1.0 - length(p - fade.xyz) / fade.w, 0.0) : 1.0;
+        pixel = vec4(line.rgb, line.a * left);
+        return;
+    }
     if (flatly) { pixel = vec4(c.rgb, 1.0); return; }
     vec3 m = normalize(gl_FrontFacing ? n : -n);
     float lamp = max(dot(m, normalize(vec3(-0.35, 0.55, 0.76))), 0.0), fill = max(dot(m, vec3(0.8, 0.0, 0.6)), 0.0);
@@ -243,7 +253,8 @@ class GxViewer {
         this.lines = "edges";
         this.flat = false;
         this.background = [1, 1, 1, 1];
-        this.gl = canvas.getContext("webgl2", {antialias: true});
+        this.ground = null; /* or {height, size, colour}: along up; of its grid, m; of the grid and shadows, RGB to 1 */
+        this.gl = canvas.getContext("webgl2", {antialias: true, stencil: true});
         if (!this.gl) throw new Error("WebGL2 is missing");
         this.start();
         canvas.addEventListener("webglcontextlost", event => event.preventDefault());
@@ -276,8 +287,17 @@ class GxViewer {
         });
         this.indices = {};
         for (const name of ["faces", "edges", "triangles"]) this.indices[name] = {buffer: gl.createBuffer(), count: 0};
+        this.plain = gl.createVertexArray(); /* of positions alone: the ground's grid */
+        gl.bindVertexArray(this.plain);
+        this.grid = {buffer: gl.createBuffer(), of: null, count: 0};
+        gl.bindBuffer(gl.ARRAY_BUFFER, this.grid.buffer);
+        gl.enableVertexAttribArray(0);
+        gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 0, 0);
+        gl.bindVertexArray(null);
         gl.enable(gl.DEPTH_TEST);
         gl.depthFunc(gl.LEQUAL);
+        gl.stencilFunc(gl.EQUAL, 0, 255); /* shadows do not add up */
+        gl.stencilOp(gl.KEEP, gl.KEEP, gl.INCR);
         gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
         this.mesh = this.coloured = null;
     }
@@ -359,6 +379,40 @@ class GxViewer {
         gl.drawElements(kind, count, gl.UNSIGNED_INT, 0);
     }
 
+    /* Lines across and along, ten a size each way */
+    takeGrid() {
+        const {height, size} = this.ground, {up, side, front} = this.camera, ends = [];
+        const point = (a, b) => gxMix(gxMix(up, height, side, a * size), 1, front, b * size);
+        for (let i = -10; i <= 10; i++)
+            ends.push(...point(i / 10, -1), ...point(i / 10, 1), ...point(-1, i / 10), ...point(1, i / 10));
+        this.gl.bindBuffer(this.gl.ARRAY_BUFFER, this.grid.buffer);
+        this.gl.bufferData(this.gl.ARRAY_BUFFER, new Float32Array(ends), this.gl.STATIC_DRAW);
+        this.grid.of = this.ground;
+        this.grid.count = ends.length / 3;
+    }
+
+    /* The ground: shadows and a grid that fades. It is under all, so it hides nothing. */
+    drawGround() {
+        const gl = this.gl, {height, size, colour} = this.ground, {up} = this.camera;
+        if (this.grid.of !== this.ground) this.takeGrid();
+        gl.enable(gl.BLEND);
+        gl.depthMask(false);
+        gl.uniform4f(this.at("ground"), ...up, height);
+        gl.uniform4f(this.at("line"), ...colour, 0.2);
+        gl.uniform1i(this.at("shadow"), true);
+        gl.enable(gl.STENCIL_TEST);
+        this.drawList("faces", gl.TRIANGLES);
+        gl.disable(gl.STENCIL_TEST);
+        gl.uniform1i(this.at("shadow"), false);
+        gl.uniform4f(this.at("line"), ...colour, 0.35);
+        gl.uniform4f(this.at("fade"), ...gxScaled(up, height), size);
+        gl.bindVertexArray(this.plain);
+        gl.drawArrays(gl.LINES, 0, this.grid.count);
+        gl.bindVertexArray(null);
+        gl.uniform4f(this.at("fade"), 0, 0, 0, 0);
+        gl.depthMask(true);
+    }
+
     draw() {
         const gl = this.gl, scale = window.devicePixelRatio || 1;
         const width = Math.round(this.canvas.clientWidth * scale) || 1;
@@ -367,15 +421,16 @@ class GxViewer {
         if (this.canvas.height !== height) this.canvas.height = height;
         gl.viewport(0, 0, width, height);
         gl.clearColor(...this.background);
-        gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+        gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT | gl.STENCIL_BUFFER_BIT);
         if (!this.frame) return;
         if (this.coloured !== this.colourOf) this.takeColours();
         const {right, above, back} = this.camera.axes();
         gl.uniformMatrix4fv(this.at("matrix"), false, this.camera.matrix(width / height));
         gl.uniformMatrix3fv(this.at("axes"), false, new Float32Array([...right, ...above, ...back]));
         gl.uniform1i(this.at("flatly"), this.flat);
-        gl.uniform4f(this.at("line"), 0, 0, 0, 0);
         gl.uniform1f(this.at("lift"), 0);
+        if (this.ground && !this.flat) this.drawGround();
+        gl.uniform4f(this.at("line"), 0, 0, 0, 0);
         gl.disable(gl.BLEND);
         this.drawList("faces", gl.TRIANGLES);
         if (this.lines === "none" || this.flat) return;

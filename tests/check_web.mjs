@@ -3,10 +3,10 @@
 //     FOLDER     the page, as `make web` builds it
 //     DIRECTORY  of the pictures
 import {mkdirSync, readFileSync, writeFileSync} from "node:fs";
-import {createServer} from "node:http";
-import {extname, join, normalize} from "node:path";
+import {join} from "node:path";
 import {brotliCompressSync} from "node:zlib";
 import {decodePng, openPage} from "./chromium.mjs";
+import {serve} from "./serve.mjs";
 
 const [folder, directory] = process.argv.slice(2);
 const width = 960, height = 700;
@@ -16,21 +16,10 @@ function check(name, good, found = "") {
     if (good) passed++;
     else failed++;
     if (!good) console.log("FAILED " + name, found);
+    return good;
 }
 
-// A plain file server
-const types = {".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".wasm": "application/wasm"};
-const server = createServer((request, response) => {
-    const path = normalize(request.url.split("?")[0]).replace(/\/$/, "/index.html");
-    try {
-        const bytes = readFileSync(join(folder, path));
-        response.writeHead(200, {"Content-Type": types[extname(path)] ?? "application/octet-stream"}).end(bytes);
-    } catch {
-        response.writeHead(404).end();
-    }
-});
-await new Promise(done => server.listen(0, "127.0.0.1", done));
-const address = `http://127.0.0.1:${server.address().port}/`;
+const {address, close} = await serve(folder);
 
 // Waits until an expression of the page is true.
 async function until(page, expression, seconds = 30) {
@@ -154,7 +143,25 @@ async function checkGround(page) {
     const still = await look(page);
     await new Promise(done => setTimeout(done, 300));
     check("space pauses", difference(still, await look(page)) === 0);
+    await checkPaused(page);
     await page.key(" ", " ");
+}
+
+// A body that is paused goes on step by step. A stroke along an earlier one, which divides nothing, leaves it as well as it was.
+async function checkPaused(page) {
+    await page.key("n", "n");
+    await until(page, "page.numbers.steps === 0");
+    for (let i = 1; i <= 40; i++) {
+        await page.key(".", ".");
+        if (!check("a step is one step", await until(page, `page.numbers.steps === ${i}`), await numbers(page))) return;
+    }
+    for (let i = 0; i < 3; i++) {
+        await stroke(page, [150, 350], [810, 330]);
+        check("a stroke again", await until(page, `page.numbers.marks === ${i + 1} && page.numbers.fragments === 2`), await numbers(page));
+    }
+    await page.key(".", ".");
+    check("it goes on", await until(page, "page.numbers.steps === 41") && await page.evaluate("page.trouble") === "",
+          await page.evaluate("page.trouble"));
 }
 
 async function checkView(page) {
@@ -266,6 +273,6 @@ check("without vectors", await until(plain, "page.ready && page.frames > 3") &&
 await plain.key("Enter");
 check("it slices, too", await until(plain, "page.numbers.fragments === 2"), await numbers(plain));
 await plain.close();
-server.close();
+close();
 console.log(`check-web: ${passed} passed, ${failed} failed`);
 process.exit(failed === 0 ? 0 : 1);

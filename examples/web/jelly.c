@@ -304,15 +304,18 @@ EXPORT(jelly_mark_count) uint32_t jelly_mark_count(void) { return (uint32_t)mark
 EXPORT(jelly_stroke) int jelly_stroke(int lift) {
     gx_blade_report report;
     gx_result result = gx_blade_move(blade, numbers, 2, NULL, 0, &report, NULL);
-    int cut = result == GX_OK && report.cut.touched_elements > 0;
+    int cut = result == GX_OK && report.triangle_count > 0;
     if (lift) {
         const gx_result lifted = gx_blade_lift(blade, &report, NULL);
-        cut |= lifted == GX_OK && report.cut.touched_elements > 0;
+        cut |= lifted == GX_OK && report.triangle_count > 0;
         if (result == GX_OK) result = lifted;
     }
     numbers[6] = cut;
-    if (!cut) return (int)result;
-    return result == GX_OK ? refresh() : (int)result;
+    if (cut) {
+        const int shown = refresh();
+        if (result == GX_OK) return shown;
+    }
+    return (int)result;
 }
 
 /* ----------------------------------------------------------------------------------------------- >>moving */

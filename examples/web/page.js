@@ -1,8 +1,8 @@
 /* page.js: a body to slice, pull and throw, in a page. worker.js has the body, player.js draws it.
 
    contents
-     >>view     rays through the cursor, the ground's grid
-     >>tools    knife, hand, view: by mouse, pen, fingers and keys
+     >>view     rays through the cursor
+     >>tools    knife, hand, view: by mouse, pen, fingers and keys; the knife's trail
      >>page     controls, models, numbers */
 "use strict";
 
@@ -40,6 +40,15 @@ let last = null;            /* where the knife was last sent */
 function sendStroke(x, y, more = {}) {
     page.worker.postMessage({stroke: edgeAt(x, y), ...more});
     last = {x, y};
+    leaveTrail(x, y, more);
+}
+
+/* While a stroke lasts, one sees where it has been. */
+let trail = [];
+function leaveTrail(x, y, {first, last}) {
+    if (first || last) trail = [];
+    if (!last) trail.push(`${x},${y}`);
+    at("trail").firstElementChild.setAttribute("points", trail.join(" "));
 }
 
 function grabAt(x, y) {
@@ -131,7 +140,7 @@ function sliceMiddle(down) {
 
 const keys = {
     k: () => choose("knife"), h: () => choose("hand"), v: () => choose("view"), u: undo, n: make, w: wires, c: colours,
-    o: () => at("file").click(), " ": pause, Enter: event => sliceMiddle(event.shiftKey),
+    o: () => at("file").click(), " ": pause, ".": once, Enter: event => sliceMiddle(event.shiftKey),
     ArrowLeft: () => turn(-0.1, 0), ArrowRight: () => turn(0.1, 0), ArrowUp: () => turn(0, 0.1), ArrowDown: () => turn(0, -0.1),
     "+": () => zoom(1.15), "=": () => zoom(1.15), "-": () => zoom(1 / 1.15),
 };
@@ -166,6 +175,9 @@ function pause() {
     at("pause").setAttribute("aria-pressed", page.paused);
     page.worker.postMessage({pause: page.paused});
 }
+
+/* A step of a body that is paused */
+function once() { page.worker.postMessage({once: true}); }
 
 function undo() { page.worker.postMessage({undo: true}); }
 
@@ -263,6 +275,7 @@ function start() {
         return;
     }
     page.viewer.background = dark ? [0.07, 0.09, 0.11, 1] : [0.95, 0.96, 0.97, 1];
+    page.viewer.ground = {height: 0, size: 2.5, colour: dark ? [0.5, 0.6, 0.7] : [0.1, 0.15, 0.2]};
     page.worker = new Worker("worker.js");
     page.worker.onmessage = take;
     page.worker.onerror = event => { page.trouble = at("trouble").textContent = event.message; };

@@ -5,16 +5,20 @@
      {model: bytes, name, young}           a new body of a closed surface: an OBJ or STL file
      {stroke: [6 numbers], first, last}    the blade's edge, two points in space; first: a stroke begins, last: it ends
      {grab: [6 numbers]}, {pull: [3 numbers]}, {release: true}     a hand: ray; point
-     {pause: flag}, {gravity: m/s2}        {seen: true}    the page has shown the last frame
+     {pause: flag}, {gravity: m/s2}        {once: true}    a step, though it is paused
+     {seen: true}                          the page has shown the last frame
    Messages out: {ready, simd}; {made: kind}; {grabbed: point or null}; {trouble: text};
-     {frame: {mesh or null, positions, normals}, numbers: {fragments, elements, unknowns, step, cut, marks, memory}} */
+     {frame: {mesh or null, positions, normals}, numbers: {fragments, elements, unknowns, steps, step, cut, marks, memory}}
+     steps: since the body is there; step, cut: the last one's time, ms; marks: strokes to go back; memory: bytes */
 "use strict";
 
 let lib = null;          /* exports of the module */
 let made = false;        /* there is a body */
 let mesh = true;         /* the page lacks the present triangles */
 let waiting = false;     /* the page has not shown the last frame */
+let moved = false;       /* something is different from there */
 let paused = false, gravity = 9.81;
+let owed = 0, steps = 0; /* to be taken while paused; taken since the body is there */
 const strokes = [];      /* edges that are to be moved through the body */
 const times = {step: 0, cut: 0};
 
@@ -91,7 +95,7 @@ function make(kind, young, name = "") {
         postMessage({trouble: (blame ? blame + ": " : "") + text(lib.jelly_error_text(result))});
         return;
     }
-    strokes.length = 0;
+    strokes.length = owed = steps = 0;
     made = mesh = true;
     postMessage({made: kind});
 }
@@ -136,10 +140,10 @@ function show() {
     if (mesh)
         frame.mesh = {triangles: copy(Uint32Array, lib.jelly_triangles(), 3 * count), fragments: fragments(count),
                       surfaces: copy(Uint32Array, lib.jelly_surfaces(), count)};
-    mesh = false;
+    mesh = moved = false;
     lib.jelly_ids();
     const [pieces, elements, unknowns] = numbers();
-    postMessage({frame, numbers: {fragments: pieces, elements, unknowns, step: times.step, cut: times.cut,
+    postMessage({frame, numbers: {fragments: pieces, elements, unknowns, steps, step: times.step, cut: times.cut,
                                   marks: lib.jelly_mark_count(), memory: lib.memory.buffer.byteLength}},
                 [frame.positions.buffer, frame.normals.buffer]);
     waiting = true;
@@ -149,14 +153,17 @@ function show() {
 function tick() {
     const begin = performance.now();
     if (made) {
+        moved = moved || strokes.length > 0 || mesh;
         while (strokes.length > 0) stroke(strokes.shift());
-        if (!paused) {
+        if (!paused || owed > 0) {
             const stepping = performance.now();
+            owed = Math.max(owed - 1, 0);
             numbers().set([1 / 60, gravity]);
-            good(lib.jelly_step());
+            if (good(lib.jelly_step())) steps++;
+            moved = true;
             times.step = performance.now() - stepping;
         }
-        if (!waiting) show();
+        if (moved && !waiting) show();
     }
     setTimeout(tick, Math.max(0, 1000 / 60 - (performance.now() - begin)));
 }
@@ -185,6 +192,7 @@ onmessage = ({data}) => {
         good(lib.jelly_undo());
         mesh = true;
     } else if (data.pause !== undefined) paused = data.pause;
+    else if (data.once) owed += paused;
     else if (data.gravity !== undefined) gravity = data.gravity;
     else if (data.seen) waiting = false;
 };
