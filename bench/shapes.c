@@ -471,7 +471,7 @@ static void run_stiffness(int materials) {
 
 /* Making bodies */
 static void run_costs(void) {
-    static const uint32_t sizes[6][2] = {{112, 18}, {25, 18}, {50, 18}, {112, 9}, {112, 36}, {158, 18}};
+    static const uint32_t sizes[6][2] = {{112, 21}, {25, 21}, {50, 21}, {112, 10}, {112, 42}, {158, 21}};
     int i, n;
     for (i = 0; i < (small ? 1 : 6); i++) {
         row r = empty_row("cost", "carved", small ? 6 : sizes[i][1]);
