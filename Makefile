@@ -64,12 +64,15 @@ help:
 	@echo "make charts      docs/charts/, docs/BENCH.md, tables in README.md from what benches have measured; runs those"
 	@echo "                 that have not; installs gnuplot"
 	@echo "make page-blade  their chart and sections of blades alone, from make bench-blade bench-strokes"
+	@echo "make page-shapes  that of shapes, from make bench-shapes"
 	@echo "make bench-NAME  one bench: CSV on stdout and in $(BUILD)/bench/, a table on stderr"
 	@echo "  quadrature     integrals over parts of cut elements beside RXFEM, adaptive and regular sampling"
 	@echo "  stepping       error of the motion against time, over all settings; other methods"
 	@echo "  front          time to reach an error beside local solvers that games use, XPBD and VBD, by size and stiffness"
 	@echo "  space          the same cuts under refinement beside conforming meshes: locking of thin slices"
 	@echo "  thin           slices thinner than their elements, with affine copies and without: how far they bend, iterations, time"
+	@echo "  shapes         bodies carved out of a grid beside meshes that fit: how they bend and swing, steps; making them; exactness;"
+	@echo "                 MODELS=\"FILE ...\": of these surfaces too"
 	@echo "  table2         scenes of GXFEM's Table 2 by RXFEM, virtual nodes and the literal Algorithm 1 too"
 	@echo "  conditioning   RXFEM's Fig. 14, and a corner piece"
 	@echo "  failure        hard cases: which method is right, wrong, refuses, diverges, crashes"
@@ -375,7 +378,7 @@ check-wasm:
 
 # ---- benches. Only their CSV goes to stdout. BENCH=--small: smaller ones, with a folder of their own for tables and charts
 
-benches = quadrature stepping front space thin table2 conditioning failure scaling kernel open smallest solver violent accuracy drift frames skin blade strokes contact soak
+benches = quadrature stepping front space thin shapes table2 conditioning failure scaling kernel open smallest solver violent accuracy drift frames skin blade strokes contact soak
 small = $(filter --small,$(BENCH))
 tables = $(BUILD)/bench$(if $(small),/small)
 # The compiler's own default: with -std=c99 gcc fuses no multiplications with additions, whatever -march says.
@@ -389,7 +392,8 @@ $(filter-out %/solver,$(bench_programs)): $(BUILD)/bench/%: bench/%.c $(wildcard
 	@mkdir -p $(@D)
 	@$(CC) $(bench_standard) $(WARNINGS) $(BENCH_CFLAGS) -pthread $< -o $@ $(LDFLAGS) -lm
 
-$(BUILD)/bench/space $(BUILD)/bench/thin $(BUILD)/bench/scaling $(BUILD)/bench/open: examples/gxio.h examples/gxjson.h
+$(BUILD)/bench/space $(BUILD)/bench/thin $(BUILD)/bench/scaling $(BUILD)/bench/open $(BUILD)/bench/shapes: examples/gxio.h examples/gxjson.h
+$(BUILD)/bench/shapes: examples/gxshape.h tests/models.h tests/cell_moments.h tests/workloads.h tests/oracle.h tests/rational.h
 $(BUILD)/bench/kernel: tests/workloads.h tests/oracle.h tests/rational.h
 
 $(BUILD)/bench/solver: bench/solver.c $(wildcard bench/*.h) $(headers)
@@ -426,7 +430,7 @@ bench-smallest:
 plain_benches = $(filter-out bench-solver bench-kernel bench-open bench-smallest bench-table2 bench-stepping,$(benches:%=bench-%))
 $(plain_benches): bench-%: $(BUILD)/bench/%
 	@mkdir -p $(tables)
-	@$< $(tables)/$*.csv $(BENCH) $(if $(filter scaling,$*),$(MESH))
+	@$< $(tables)/$*.csv $(BENCH) $(if $(filter scaling,$*),$(MESH)) $(if $(filter shapes,$*),$(MODELS))
 
 # Scenes with the frames of GXFEM's Table 2. OCTOPUS=FILE: the octopus on that mesh
 table2 = sticks thin_slab accordion octopus
@@ -468,10 +472,10 @@ charts:
 	sh bench/page.sh $(tables) $(if $(small),$(tables),docs)/BENCH.md $(if $(small),$(tables)/)README.md || echo charts >>$(tables)/failed
 	@[ ! -e $(tables)/failed ] || { echo "failed: $$(tr '\n' ' ' <$(tables)/failed)" >&2; exit 1; }
 
-# The chart and the sections of blades alone, from tables that are there
-page-blade:
+# The chart and the sections of blades or of shapes alone, from tables that are there
+page-blade page-shapes: page-%:
 	@sh tests/install.sh charts >&2
-	@sh bench/charts.sh $(tables) docs/charts blade && sh bench/page.sh $(tables) docs/BENCH.md blade
+	@sh bench/charts.sh $(tables) docs/charts $* && sh bench/page.sh $(tables) docs/BENCH.md $*
 
 check-all: check
 	@$(MAKE) --no-print-directory lint
@@ -490,4 +494,4 @@ check-all: check
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: help web check-web lib bindings check-bindings examples demo check-page scenes pictures animation bench-programs check check-programs run-gxcut run-gxboolean run-corpus $(sort $(programs:%=run-%) $(tests:%=run-%)) FORCE sanitize sanitize-scenes check-settled compile amalgam check-amalgam install check-package coverage formatted lint format fuzz fuzz-blade flags hashes platforms check-wasm $(benches:%=bench-%) bench charts page-blade check-all clean
+.PHONY: help web check-web lib bindings check-bindings examples demo check-page scenes pictures animation bench-programs check check-programs run-gxcut run-gxboolean run-corpus $(sort $(programs:%=run-%) $(tests:%=run-%)) FORCE sanitize sanitize-scenes check-settled compile amalgam check-amalgam install check-package coverage formatted lint format fuzz fuzz-blade flags hashes platforms check-wasm $(benches:%=bench-%) bench charts page-blade page-shapes check-all clean

@@ -227,9 +227,10 @@ typedef struct gx_surface {
    two corners. Elements that the surfaces neither meet nor wind around are not made. One of cells, edge and unknowns is
    given, the others are 0. */
 typedef struct gx_shape {
-    /* surface_count. Each is closed and oriented alike, of any number of parts, and may cross itself. A part that faces
-       inward, inside of another part of the same surface, is a cavity. Where they overlap, or one lies in another, the
-       material is that of the last one: first flesh, then the bone in it. kind and scope_slots are not read */
+    /* surface_count. Each is closed and oriented alike, of any number of parts, and may cross itself: material is where
+       its winding number is not 0. A part that faces inward, inside of another part of the same surface, is a cavity.
+       Where surfaces overlap, or one lies in another, the material is that of the last one: first flesh, then the bone
+       in it. kind and scope_slots are not read */
     const gx_surface *surfaces;
     size_t surface_count;
     uint32_t cells;  /* cubes along the longest side of the box around all surfaces */

@@ -5838,7 +5838,9 @@ enum {                   /* of an element */
        GXBP_PINNED = 4,  /* it keeps all it has */
        GXBP_CHANGED = 8, /* its leaves, facets or edges become others */
        GXBP_BOUND = 1,   /* of a node: its plane bounds a leaf below it that stays */
-       GXBP_WALLED = 2   /* and separates it from what lies behind */
+       GXBP_WALLED = 2,  /* and separates it from what lies behind */
+       GXBP_MARKED = 0,  /* of an item: it stays */
+       GXBP_ALIVE = 1    /* and is an undivided facet of a leaf that stays */
 };
 
 typedef struct gxbp_piece { /* a facet of a leaf; other: the leaf on its other side. Pieces that agree may be one */
@@ -5911,12 +5913,19 @@ static void gxbp_mark_leaves(gxbp_census *c, const uint8_t *pinned) {
         for (k = 0; k < 6; k++) c->mesh_edges[cx->element_edges[6 * i + k]] |= c->elements[i];
 }
 
+/* Marks a facet itself. */
+static void gxbp_mark_one(gxbp_census *c, uint32_t facet) {
+    const gxb_facet *f = &c->cx->facets[facet];
+    const int alive = f->child == GXB_NONE && (gxbp_side_stays(c, f, 0) || gxbp_side_stays(c, f, 1));
+    c->facets[facet] = alive ? GXBP_ALIVE : GXBP_MARKED;
+}
+
 /* Marks an undivided facet with its labels. */
 static void gxbp_mark_facet(gxbp_census *c, uint32_t facet) {
     const gxb_facet *f = &c->cx->facets[facet];
     uint32_t l = f->labels, i;
     if (c->facets[facet] != GXB_NONE) return;
-    c->facets[facet] = 0;
+    gxbp_mark_one(c, facet);
     for (i = 0; i < f->loop_count; i++) c->loop_room += gxbp_count_edges(c->cx, c->cx->pool[f->loop + i] >> 1);
     for (; l != GXB_NONE && c->labels[l] == GXB_NONE; l = c->cx->labels[l].next) c->labels[l] = 0;
 }
@@ -5928,7 +5937,7 @@ static GXBP_COLD void gxbp_mark_facets(gxbp_census *c, uint32_t facet, int liste
         gxbp_mark_facet(c, facet);
         return;
     }
-    if (listed) c->facets[facet] = 0;
+    if (listed) gxbp_mark_one(c, facet);
     gxbp_mark_facets(c, child, listed);
     gxbp_mark_facets(c, child + 1, listed);
 }
@@ -5962,7 +5971,7 @@ static void gxbp_mark_polygons(gxbp_census *c) {
         if (state & GXBP_LISTED)
             gxbp_mark_facets(c, root, 1);
         else
-            c->facets[root] = 0;
+            gxbp_mark_one(c, root);
     }
     for (i = 0; i < cx->mesh_edge_count; i++) {
         const uint32_t root = cx->mesh_edge[i];
@@ -5974,12 +5983,7 @@ static void gxbp_mark_polygons(gxbp_census *c) {
     }
 }
 
-/* Is it a facet of a leaf that stays, undivided? */
-static int gxbp_is_alive(const gxbp_census *c, uint32_t facet) {
-    const gxb_facet *f = &c->cx->facets[facet];
-    return c->facets[facet] != GXB_NONE && f->child == GXB_NONE &&
-           (gxbp_side_stays(c, f, 0) || gxbp_side_stays(c, f, 1));
-}
+static int gxbp_is_alive(const gxbp_census *c, uint32_t facet) { return c->facets[facet] == GXBP_ALIVE; }
 
 static void gxbp_write_edges(gxbp_census *c, uint32_t signed_edge) {
     const uint32_t child = c->cx->edges[signed_edge >> 1].child, back = signed_edge & 1;
@@ -6942,29 +6946,30 @@ static gx_result gxbp_open_census(gxbp_census *c, gxb_complex *cx) {
     if (c->words > SIZE_MAX / sizeof *next || leaves + plans > UINT32_MAX / GXBP_KINDS) return GX_ERROR_LIMIT;
     c->block = (uint32_t *)gxbp_allocate(&cx->store.allocator, c->words * sizeof *next);
     if (c->block == NULL) return GX_ERROR_MEMORY;
-    memset(c->block, 0xff, (c->words - 5 * plans) * sizeof *next);
     next = c->block + GXBP_CENSUS_WORDS;
+    c->leaf_up = gxbp_take_words(&next, leaves);
+    c->planes = gxbp_take_words(&next, cx->store.plane_count);
+    c->points = gxbp_take_words(&next, points);
+    c->edges = gxbp_take_words(&next, edges);
+    c->owner = gxbp_take_words(&next, 2 * edges);
+    c->facets = gxbp_take_words(&next, facets);
+    c->group = gxbp_take_words(&next, facets);
+    c->labels = gxbp_take_words(&next, cx->label_count);
+    c->hollow = gxbp_take_words(&next, elements);
+    /* The others are written before they are read. */
+    memset(c->block, 0xff, (size_t)(next - c->block) * sizeof *next);
     c->leaves = gxbp_take_words(&next, leaves);
     c->leaf_of = gxbp_take_words(&next, leaves);
-    c->leaf_up = gxbp_take_words(&next, leaves);
     c->list_count = gxbp_take_words(&next, leaves);
     c->list_end = gxbp_take_words(&next, leaves);
     c->first_piece = gxbp_take_words(&next, leaves + 1);
-    c->planes = gxbp_take_words(&next, cx->store.plane_count);
-    c->points = gxbp_take_words(&next, points);
     c->at = gxbp_take_words(&next, 2 * points);
-    c->edges = gxbp_take_words(&next, edges);
     c->ends = gxbp_take_words(&next, 2 * edges);
-    c->facets = gxbp_take_words(&next, facets);
     c->loop = gxbp_take_words(&next, facets);
     c->loop_count = gxbp_take_words(&next, facets);
     c->order = gxbp_take_words(&next, facets);
-    c->group = gxbp_take_words(&next, facets);
     c->facet_of = gxbp_take_words(&next, facets);
-    c->owner = gxbp_take_words(&next, 2 * edges);
-    c->labels = gxbp_take_words(&next, cx->label_count);
     c->elements = gxbp_take_words(&next, elements);
-    c->hollow = gxbp_take_words(&next, elements);
     c->roots = gxbp_take_words(&next, elements);
     c->mesh_edges = gxbp_take_words(&next, cx->mesh_edge_count);
     c->edge_first = gxbp_take_words(&next, cx->mesh_edge_count);

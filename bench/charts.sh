@@ -1,7 +1,7 @@
 #!/bin/sh
 # Draws what benches have measured.
 # usage: sh bench/charts.sh TABLES CHARTS
-#        sh bench/charts.sh TABLES CHARTS blade     draws blade.svg alone
+#        sh bench/charts.sh TABLES CHARTS blade     draws blade.svg alone; shapes: shapes.svg
 #     TABLES  directory of the benches' CSV files
 #     CHARTS  directory of the SVG files
 # quadrature.csv gives quadrature.svg and quadrature_triangles.svg, stepping.csv stepping.svg and stepping_cuts.svg, kernel.csv chains.svg,
@@ -13,7 +13,7 @@ mkdir -p "$charts" || exit 2
 # where BENCH: when its table was made, and on what
 where() { echo "$(date -r "$tables/$1.csv" +%Y-%m-%d), $(uname -m | tr _ -), one thread"; }
 
-for bench in ${3:-quadrature conditioning stepping front space thin scaling blade open kernel}; do
+for bench in ${3:-quadrature conditioning stepping front space thin shapes scaling blade open kernel}; do
     [ -s "$tables/$bench.csv" ] || { echo "$0: $tables/$bench.csv is missing: make bench-$bench" >&2; exit 2; }
 done
 
@@ -344,6 +344,33 @@ unset multiplot
 END
 }
 
+# How far shapes bend that are carved out of a grid, beside meshes that fit, of one material and of two: by unknowns, by time
+shapes() {
+    echo 'set terminal svg size 1180,860 font "sans,12" background "white"'
+    echo "set output '$charts/shapes.svg'"
+    for series in one two; do
+        for mesh in carved mapped stuffed; do
+            echo "\$${series}_$mesh << EOD"
+            awk -F, -v series=$series -v mesh=$mesh '$1 == series && $2 == mesh { print $6, $9, -$7, $8 }' "$tables/shapes.csv"
+            echo "EOD"
+        done
+    done
+    cat <<END
+$styles
+set multiplot layout 2,2 title "A free ellipsoid of one material (above) and of two: deflection and lowest frequency   ($(where shapes))" font "sans,15"
+set logscale xy; set grid back lc rgb "#dddddd"; set key bottom left samplen 1.5; set ylabel "error"; set yrange [2e-3:1]; set format y "10^{%L}"
+END
+    for series in one two; do
+        fitted="\$${series}_mapped using COLUMN:3 with linespoints ls 3 title 'mapped mesh, deflection', \$${series}_mapped using COLUMN:4 with linespoints ls 4 title 'its frequency'"
+        [ $series = two ] || fitted="$fitted, \$one_stuffed using COLUMN:3 with linespoints ls 5 title 'stuffed mesh, deflection'"
+        for column in 1 2; do
+            [ $column = 1 ] && { echo 'set xlabel "unknowns"; set xrange [300:60000]'; slope="600 * x ** (-2.0 / 3) / 8"; } || { echo 'set xlabel "a time step, ms"; set xrange [0.05:8]'; slope=NaN; }
+            echo "plot \$${series}_carved using $column:3 with linespoints ls 1 title 'carved, deflection', \$${series}_carved using $column:4 with linespoints ls 8 title 'its frequency', $(echo "$fitted" | sed "s/COLUMN/$column/g"), $slope with lines ls 7 title '$([ $column = 1 ] && echo second order)'"
+        done
+    done
+    echo "unset multiplot"
+}
+
 # How far the walls of a blade's cut are off known sheets, over tolerances: by these, and by the time for each divided element
 blade() {
     echo 'set terminal svg size 1180,480 font "sans,12" background "white"'
@@ -413,5 +440,10 @@ if [ "${3:-}" = blade ]; then
     echo "wrote $charts/blade.svg"
     exit 0
 fi
-panels | gnuplot && triangles | gnuplot && conditioning | gnuplot && stepping | gnuplot && stepping_cuts | gnuplot && front | gnuplot && space | gnuplot && thin | gnuplot && scaling | gnuplot && blade | gnuplot && open | gnuplot && chains | gnuplot || exit 1
-echo "wrote $charts/quadrature.svg, quadrature_triangles.svg, conditioning.svg, stepping.svg, stepping_cuts.svg, front.svg, space.svg, thin.svg, scaling.svg, blade.svg, open.svg, chains.svg"
+if [ "${3:-}" = shapes ]; then
+    shapes | gnuplot || exit 1
+    echo "wrote $charts/shapes.svg"
+    exit 0
+fi
+panels | gnuplot && triangles | gnuplot && conditioning | gnuplot && stepping | gnuplot && stepping_cuts | gnuplot && front | gnuplot && space | gnuplot && thin | gnuplot && shapes | gnuplot && scaling | gnuplot && blade | gnuplot && open | gnuplot && chains | gnuplot || exit 1
+echo "wrote $charts/quadrature.svg, quadrature_triangles.svg, conditioning.svg, stepping.svg, stepping_cuts.svg, front.svg, space.svg, thin.svg, shapes.svg, scaling.svg, blade.svg, open.svg, chains.svg"

@@ -2,6 +2,7 @@
 # Writes what benches have measured as a page with tables and charts, and two parts of the README.
 # usage: sh bench/page.sh TABLES PAGE README
 #        sh bench/page.sh TABLES PAGE blade     writes the sections of blades anew, or makes them; needs their tables alone
+#        sh bench/page.sh TABLES PAGE shapes    the same of shapes
 #     TABLES  directory of the benches' CSV files; a missing one is an error
 #     PAGE    the page; charts are in charts/ beside it
 #     README  what stands between its lines `<!-- NAME -->` and `<!-- end of NAME -->` is written anew: why, speed
@@ -10,13 +11,14 @@ tables=$1
 page=$2
 readme=$3
 
-wanted="quadrature stepping front conditioning failure table2 table2_ratios scaling kernel open smallest solver product violent accuracy drift frames skin blade strokes thin"
+wanted="quadrature stepping front conditioning failure table2 table2_ratios scaling kernel open smallest solver product violent accuracy drift frames skin blade strokes thin shapes"
 [ "$readme" != blade ] || wanted="blade strokes"
+[ "$readme" != shapes ] || wanted=shapes
 for bench in $wanted; do
     [ -s "$tables/$bench.csv" ] || { echo "$0: $tables/$bench.csv is missing: make bench-$(echo $bench | sed 's/_ratios//; s/product/solver/')" >&2; exit 2; }
 done
 for name in why speed; do
-    [ "$readme" != blade ] || break
+    [ "$readme" != blade ] && [ "$readme" != shapes ] || break
     for line in "<!-- $name -->" "<!-- end of $name -->"; do
         [ "$(grep -cx -- "$line" "$readme")" = 1 ] || { echo "$0: $readme: no line \`$line\`, or several" >&2; exit 2; }
     done
@@ -435,6 +437,68 @@ steps, root of the mean square over the run, over the largest displacement. defa
     thin_newton
 }
 
+# Rows of shapes.csv of one series; EXPRESSION: of awk
+shapes_rows() {
+    awk -F, -v series="$1" '
+        function share(x) { return sprintf("%.2g %%", 100 * x) }
+        $1 == series { print "| " '"$2"' " |" }' "$tables/shapes.csv"
+}
+
+# A body carved out of a grid beside the MESH of one material that has about as many unknowns: time for an unknown, as a multiple
+shapes_ratio() {
+    awk -F, -v mesh="$1" '
+        $1 == "one" && $2 == "carved" { n[++count] = $6; time[count] = $9 / $6 }
+        $1 == "one" && $2 == mesh { fitted[++fits] = $6; each[fits] = $9 / $6 }
+        END {
+            for (i = 1; i <= count; i++) {
+                for (j = best = 1; j <= fits; j++) if ((fitted[j] / n[i] - 1) ^ 2 < (fitted[best] / n[i] - 1) ^ 2) best = j
+                printf("%s%.2f", i > 1 ? ", " : "", time[i] / each[best])
+            }
+        }' "$tables/shapes.csv"
+}
+
+# The order of convergence from the last but two to the last grid: COLUMN by number
+shapes_order() {
+    awk -F, -v series="$1" -v column="$2" '
+        $1 == series && $2 == "carved" { error[++n] = $column < 0 ? -$column : $column; cells[n] = $3 }
+        END { first = n > 2 ? n - 2 : 1; printf("%.1f", log(error[first] / error[n]) / log(cells[n] / cells[first])) }' "$tables/shapes.csv"
+}
+
+shapes_section() {
+    echo "### Shapes carved out of a grid"
+    echo
+    text "A free ellipsoid with half axes of 1, 0.6 and 0.45 m as a body of a closed surface (\`gx_body_desc.shape\`), beside meshes that fit \
+it: cubes mapped to it, and isosurface stuffing. Linear elasticity, Poisson's ratio 0.3. Deflection: the work of a force that bends it; \
+frequency: of the lowest mode. Errors are those against the mapped meshes, extrapolated. The order of the carved body over its last \
+three grids is $(shapes_order one 7) in the deflection and $(shapes_order one 8) in the frequency. Of two materials, with a core ten \
+times as stiff, it is $(shapes_order two 7) and $(shapes_order two 8): an element through which the interface goes has one gradient for \
+both, so it is too stiff there. The mapped mesh fits the interface."
+    echo
+    heading "mesh" "cells" elements unknowns "deflection, one material" "frequency" "step, ms" "CG iterations"
+    shapes_rows one '$2 " | " $3 " | " $5 " | " $6 " | " share($7) " | " share($8) " | " $9 " | " $10'
+    echo
+    heading "mesh" "cells" elements unknowns "deflection, two materials" "frequency" "step, ms" "CG iterations"
+    shapes_rows two '$2 " | " $3 " | " $5 " | " $6 " | " share($7) " | " share($8) " | " $9 " | " $10'
+    echo
+    echo "![errors of carved and fitted bodies by unknowns and by time](charts/shapes.svg)"
+    echo
+    text "A step of the carved body takes, for each unknown, so many times that of the mapped mesh with about as many: \
+$(shapes_ratio mapped); of the stuffed one: $(shapes_ratio stuffed). Small carved bodies have more of their elements at the surface."
+    echo
+    text "Making a body of a bumpy ellipsoid, seconds of the processor, and the memory that it holds afterwards and at most."
+    echo
+    heading "cells" triangles elements unknowns s MB "at most"
+    shapes_rows cost '$3 " | " $4 " | " $5 " | " $6 " | " $11 " | " $12 " | " $13'
+    echo
+    text "Models: the largest error of volume, centre and inertia, by the mass matrices of the cells, beside exact sums over the model's \
+triangles; that of the skin's area. \`MODELS=\` names others to \`make bench-shapes\`. \`tests/test_nasty.c\` does the same with twenty \
+that meshers fail on, of several materials too."
+    echo
+    heading "model" cells triangles elements unknowns moments "area of the skin"
+    shapes_rows model '$2 " | " $3 " | " $4 " | " $5 " | " $6 " | " sprintf("%.0e", $14) " | " sprintf("%.0e", $15)'
+    echo
+}
+
 # A paragraph
 text() { echo "$*" | fold -s -w 119 | sed 's/ *$//'; }
 
@@ -461,6 +525,16 @@ if [ "$readme" = blade ]; then
         awk '/^## Booleans of closed surfaces$/ { on = 1 } on { print }' "$page"
     } >"$page.new" && mv "$page.new" "$page" || exit 2
     echo "wrote sections of blades of $page"
+    exit 0
+fi
+
+if [ "$readme" = shapes ]; then
+    {
+        awk '/^### (Shapes carved out of a grid|Beside local solvers)$/ { exit } { print }' "$page"
+        shapes_section
+        awk '/^### Beside local solvers$/ { on = 1 } on { print }' "$page"
+    } >"$page.new" && mv "$page.new" "$page" || exit 2
+    echo "wrote the section of shapes of $page"
     exit 0
 fi
 
@@ -514,6 +588,7 @@ within one layer, as shares of those by elements of high order (\`bench/plate.h\
     echo
     echo "![drops with affine copies and without, and the time to an error](charts/thin.svg)"
     echo
+    shapes_section
     echo "### Beside local solvers"
     echo
     text "XPBD [Macklin and Mueller 2021] and VBD [Chen et al. 2024] on the same copies and parts of elements, in single precision, 16 \
@@ -657,7 +732,7 @@ judges."
     echo
     echo "| file in \`bench/\` | what it is |"
     echo "| --- | --- |"
-    echo "| \`quadrature.c\`, \`stepping.c\`, \`space.c\`, \`thin.c\`, \`front.c\`, \`table2.c\`, \`conditioning.c\`, \`failure.c\`, \`scaling.c\`, \`solver.c\`, \`violent.c\`, \`kernel.c\`, \`open.c\`, \`smallest.sh\`, \`accuracy.c\`, \`drift.c\`, \`frames.c\`, \`skin.c\`, \`blade.c\`, \`strokes.c\` | the sections above, in this order but for Booleans |"
+    echo "| \`quadrature.c\`, \`stepping.c\`, \`space.c\`, \`thin.c\`, \`shapes.c\`, \`front.c\`, \`table2.c\`, \`conditioning.c\`, \`failure.c\`, \`scaling.c\`, \`solver.c\`, \`violent.c\`, \`kernel.c\`, \`open.c\`, \`smallest.sh\`, \`accuracy.c\`, \`drift.c\`, \`frames.c\`, \`skin.c\`, \`blade.c\`, \`strokes.c\` | the sections above, in this order but for Booleans |"
     echo "| \`contact.c\` | pieces that press on each other: against closed forms; what a step with contact costs |"
     echo "| \`soak.c\` | 100,000 steps of bodies that are cut, kicked and dropped: no copy may run away |"
     echo "| \`rxfem.h\`, \`rxfem_rules.h\`, \`rxfem_model.h\` | RXFEM (Koschier, Bender, Thuerey 2017), written for the bench |"

@@ -52,7 +52,7 @@ static void blade_point(const void *user, double a, double b, double *x) {
 
 static void make_tall(scene *s) {
     double low[3], high[3], scale;
-    gxio_bounds(s->mesh.positions, s->mesh.node_count, low, high);
+    scene_bounds(s, low, high);
     scale = tall / (high[1] - low[1]);
     scene_scale(s, scale, scale, scale);
 }

@@ -52,7 +52,7 @@
 typedef struct scene_desc {
     const char *name, *about;      /* about: one line */
     const char *mesh, *small_mesh; /* as gxio_mesh_load takes them; small_mesh NULL: the same; mesh NULL: none */
-    int any_mesh;                  /* not 0: --mesh may name another */
+    int any_mesh;                  /* not 0: --mesh may name another, --shape a closed surface */
     uint32_t frames, small_frames;
     int has_csv;           /* not 0: --csv names a file for figures of the scene's own */
     uint32_t least_frames; /* with fewer there is nothing to see; 0: any number will do */
@@ -109,11 +109,14 @@ typedef struct scene {
     scene_desc desc;
     int small, quiet, help;
     uint32_t frame, frames, every; /* frame: of the next step */
-    const char *mesh_name, *out, *format, *table, *csv, *trace;
+    const char *mesh_name, *shape_name, *out, *format, *table, *csv, *trace;
     FILE *trace_stream; /* NULL: nothing traced yet */
     gx_region *regions; /* region_count, what is held; owned */
     size_t region_count;
     gxio_mesh mesh;         /* may be moved before scene_make */
+    gxio_surface shape;     /* the closed surface that stands in its place, if it has triangles */
+    uint32_t cells;         /* of the shape's grid along its longest side */
+    double volume;          /* of the body before any cut, m3 */
     gx_body_desc body_desc; /* may be changed before scene_make */
     gx_step_desc step;      /* may be changed at any time */
     gx_body *body;
@@ -205,7 +208,10 @@ static inline void scene_usage(const scene *s) {
            (unsigned long)s->desc.small_frames);
     if (s->desc.has_csv) puts("  --csv FILE          appends the scene's figures to it");
     if (s->desc.any_mesh)
-        printf("  --mesh MESH         a file or a generated mesh, as gxcut takes them (%s)\n", s->desc.mesh);
+        printf("  --mesh MESH         a file or a generated mesh, as gxcut takes them (%s)\n"
+               "  --shape CUT         in its place: the body is all inside of a closed surface, as gxcut takes them\n"
+               "  --cells N           cubes of the grid along the shape's longest side (%lu)\n",
+               s->desc.mesh, (unsigned long)s->cells);
     puts("  --out DIR           writes frames there\n"
          "  --every N           only each N-th of them (1)\n"
          "  --format vtu|obj|html\n"
@@ -254,6 +260,10 @@ static inline int scene_take_value(scene *s, const char *name, const char *value
         s->csv = value;
     else if (strcmp(name, "--mesh") == 0 && s->desc.any_mesh)
         s->mesh_name = value;
+    else if (strcmp(name, "--shape") == 0 && s->desc.any_mesh)
+        s->shape_name = value;
+    else if (strcmp(name, "--cells") == 0 && s->desc.any_mesh)
+        scene_read_count(s, name, value, &s->cells);
     else
         return 0;
     return 1;
@@ -276,7 +286,9 @@ static inline void scene_take_arguments(scene *s, int argc, char **argv) {
         scene_quit(s, SCENE_MISUSED);
     }
     if (!s->frames) s->frames = s->small ? s->desc.small_frames : s->desc.frames;
-    if (!s->mesh_name) s->mesh_name = s->small && s->desc.small_mesh ? s->desc.small_mesh : s->desc.mesh;
+    if (s->mesh_name && s->shape_name) scene_misuse(s, "--shape", "stands in place of a mesh");
+    if (!s->mesh_name && !s->shape_name)
+        s->mesh_name = s->small && s->desc.small_mesh ? s->desc.small_mesh : s->desc.mesh;
 }
 
 /* ---------------------------------------------------------------------------------------------- >>body */
@@ -291,12 +303,14 @@ static inline void scene_set_defaults(scene *s) {
     s->step.newton_iterations = 1;
 }
 
-/* Reads the command line and the mesh. */
+/* Reads the command line and the mesh, or the surface in its place. */
 static inline void scene_open(scene *s, const scene_desc *desc, int argc, char **argv) {
+    const gxio_box unit = {{0, 0, 0}, {1, 1, 1}};
     memset(s, 0, sizeof *s);
     s->desc = *desc;
     s->every = 1;
     s->format = "vtu";
+    s->cells = 16;
     scene_set_defaults(s);
     scene_take_arguments(s, argc, argv);
     if (s->help) {
@@ -304,15 +318,25 @@ static inline void scene_open(scene *s, const scene_desc *desc, int argc, char *
         exit(SCENE_RIGHT);
     }
     if (s->mesh_name && !gxio_mesh_load(s->mesh_name, &s->mesh, &s->error)) scene_quit(s, SCENE_MISUSED);
+    if (s->shape_name && !gxio_surface_load(s->shape_name, &unit, &s->shape, &s->error)) scene_quit(s, SCENE_MISUSED);
     if (s->out && !scene_is_format(s, "html") && !gxio_make_directory(s->out, &s->error)) scene_quit(s, SCENE_MISUSED);
     if (!s->quiet) printf("%s: %s\n", s->desc.name, s->desc.about);
 }
 
-/* Multiplies the mesh's coordinates. */
+/* Multiplies the coordinates of the mesh, or of the surface in its place. */
 static inline void scene_scale(scene *s, double x, double y, double z) {
     const double factor[3] = {x, y, z};
     size_t i;
     for (i = 0; i < 3 * s->mesh.node_count; i++) s->mesh.positions[i] *= factor[i % 3];
+    for (i = 0; i < 3 * s->shape.vertex_count; i++) s->shape.vertices[i] *= factor[i % 3];
+}
+
+/* The box around the mesh, or around the surface in its place */
+static inline void scene_bounds(const scene *s, double low[3], double high[3]) {
+    if (s->shape.vertex_count)
+        gxio_bounds(s->shape.vertices, s->shape.vertex_count, low, high);
+    else
+        gxio_bounds(s->mesh.positions, s->mesh.node_count, low, high);
 }
 
 /* Nodes that elements use, in their order; the others go. */
@@ -354,16 +378,7 @@ static inline void scene_create(scene *s) {
     scene_must(s, gx_body_create(desc, &s->body, &s->failure), "body");
     scene_must(s, gx_body_view(s->body, &s->view, &s->failure), "view");
     s->first_copies = s->view.copy_count;
-}
-
-/* The body, of s->mesh by s->body_desc */
-static inline void scene_make(scene *s) {
-    gx_body_desc *desc = &s->body_desc;
-    desc->positions = s->mesh.positions;
-    desc->node_count = s->mesh.node_count;
-    desc->elements = s->mesh.elements;
-    desc->element_count = s->mesh.element_count;
-    scene_create(s);
+    s->volume = s->view.volume;
 }
 
 typedef struct scene_face {
@@ -429,6 +444,17 @@ static inline double scene_volume_inside(const gxio_surface *surface) {
     return sum / 6.0;
 }
 
+static inline gx_surface scene_given(const gxio_surface *surface, uint32_t material) {
+    gx_surface given;
+    memset(&given, 0, sizeof given);
+    given.vertices = surface->vertices;
+    given.vertex_count = surface->vertex_count;
+    given.triangles = surface->triangles;
+    given.triangle_count = surface->triangle_count;
+    given.material = material;
+    return given;
+}
+
 /* The body of closed surfaces, by s->body_desc: surface i is of material i, cells: along the longest side. s->mesh
    becomes its grid. */
 static inline void scene_make_of(scene *s, const gxio_surface *surfaces, size_t count, uint32_t cells) {
@@ -437,13 +463,7 @@ static inline void scene_make_of(scene *s, const gxio_surface *surfaces, size_t 
     size_t i;
     if (s->trace) scene_misuse(s, "--trace", "is for scenes of a mesh");
     memset(&shape, 0, sizeof shape);
-    for (i = 0; i < count; i++) {
-        given[i].vertices = surfaces[i].vertices;
-        given[i].vertex_count = surfaces[i].vertex_count;
-        given[i].triangles = surfaces[i].triangles;
-        given[i].triangle_count = surfaces[i].triangle_count;
-        given[i].material = (uint32_t)i;
-    }
+    for (i = 0; i < count; i++) given[i] = scene_given(&surfaces[i], (uint32_t)i);
     shape.surfaces = given;
     shape.surface_count = count;
     shape.cells = cells;
@@ -458,6 +478,20 @@ static inline void scene_make_of(scene *s, const gxio_surface *surfaces, size_t 
     s->mesh.elements = (uint32_t *)scene_array(s, s->mesh.element_count, 4 * sizeof(uint32_t));
     memcpy(s->mesh.positions, s->view.positions, s->mesh.node_count * 3 * sizeof(double));
     memcpy(s->mesh.elements, s->view.elements, s->mesh.element_count * 4 * sizeof(uint32_t));
+}
+
+/* The body, of s->mesh or of the surface in its place, by s->body_desc */
+static inline void scene_make(scene *s) {
+    gx_body_desc *desc = &s->body_desc;
+    if (s->shape.triangle_count) {
+        scene_make_of(s, &s->shape, 1, s->cells);
+        return;
+    }
+    desc->positions = s->mesh.positions;
+    desc->node_count = s->mesh.node_count;
+    desc->elements = s->mesh.elements;
+    desc->element_count = s->mesh.element_count;
+    scene_create(s);
 }
 
 /* Holds what lies in one of the regions. */
@@ -707,7 +741,7 @@ static inline void scene_cut_flat(scene *s, const double corner[3], const double
 static inline void scene_cut_across(scene *s, uint32_t axis, double at) {
     double low[3], high[3], corner[3], u[3] = {0, 0, 0}, v[3] = {0, 0, 0};
     const uint32_t j = (axis + 1) % 3, k = (axis + 2) % 3;
-    gxio_bounds(s->mesh.positions, s->mesh.node_count, low, high);
+    scene_bounds(s, low, high);
     corner[axis] = at;
     corner[j] = 2.0 * low[j] - high[j]; /* a body's width beyond it on each side, and the diagonal beside it */
     corner[k] = 2.0 * low[k] - high[k];
@@ -969,12 +1003,12 @@ static inline double scene_mass(scene *s) {
     return sum;
 }
 
-/* |sum of the cells' volumes / volume of the mesh - 1| */
+/* |sum of the cells' volumes / volume of the mesh, or of the uncut body of a surface - 1| */
 static inline double scene_volume_error(const scene *s) {
     double volume = 0.0;
     size_t c;
     for (c = 0; c < s->view.cell_count; c++) volume += s->view.cell_volume[c];
-    return fabs(volume / scene_mesh_volume(s) - 1.0);
+    return fabs(volume / (s->shape.triangle_count ? s->volume : scene_mesh_volume(s)) - 1.0);
 }
 
 /* Elements that cuts have divided */
@@ -1222,9 +1256,9 @@ static inline void scene_add_to_ring(scene_ring *ring, const gx_surface *sheet) 
     }
 }
 
-/* Fragments of the ring alone, cut at once by all the sheets' triangles and by all solids */
+/* Fragments of the ring alone, cut at once by all the sheets' triangles, by all solids and by the shape */
 static inline size_t scene_ring_fragments(scene *s, const scene_ring *ring) {
-    gx_surface *surfaces = (gx_surface *)scene_array(s, s->cut_count + 1, sizeof *surfaces);
+    gx_surface *surfaces = (gx_surface *)scene_array(s, s->cut_count + 2, sizeof *surfaces);
     gx_body_desc desc;
     gx_cut_desc cut;
     gx_view view;
@@ -1244,6 +1278,10 @@ static inline size_t scene_ring_fragments(scene *s, const scene_ring *ring) {
     surfaces[0].triangle_count = ring->triangle_count;
     for (i = 0, cut.surface_count = ring->triangle_count > 0; i < s->cut_count; i++)
         if (s->cuts[i].kind == GX_SURFACE_SOLID) surfaces[cut.surface_count++] = s->cuts[i];
+    if (s->shape.triangle_count) {
+        surfaces[cut.surface_count] = scene_given(&s->shape, 0);
+        surfaces[cut.surface_count++].kind = GX_SURFACE_KEEP;
+    }
     cut.surfaces = surfaces;
     if (cut.surface_count) scene_must(s, gx_body_cut(body, &cut, NULL, &s->failure), "cut around a node");
     scene_must(s, gx_body_view(body, &view, &s->failure), "elements around a node");
@@ -1334,7 +1372,8 @@ static inline void scene_say(scene *s, const char *format, ...) {
 static inline void scene_check_whole(scene *s) {
     const double volume = scene_volume_error(s);
     const size_t open = scene_open_edges(s);
-    scene_check(s, volume <= 1e-12, "volume of the cells against the mesh's: %.1e (at most 1e-12)", volume);
+    scene_check(s, volume <= 1e-12, "volume of the cells against the %s: %.1e (at most 1e-12)",
+                s->shape.triangle_count ? "uncut body's" : "mesh's", volume);
     scene_check(s, open == 0, "open edges of the surface: %lu (0)", (unsigned long)open);
 }
 
@@ -1403,6 +1442,7 @@ static inline int scene_close(scene *s) {
     free(s->skin.normals);
     gx_body_destroy(s->body);
     gxio_mesh_release(&s->mesh);
+    gxio_surface_release(&s->shape);
     return s->wrong ? SCENE_WRONG : SCENE_RIGHT;
 }
 

@@ -75,6 +75,7 @@ gallery() {
     echo "    make examples"
     echo "    build/helix_plate --out frames          # --help: all options; --small: seconds"
     echo "    build/octopus --mesh FILE               # octopus, bunny_groove, armadillo on a mesh of yours"
+    echo "    build/octopus --shape FILE --cells N    # or of your closed surface, without a mesh"
     echo "    make scenes                             # all of them: this page (minutes)"
     echo "    make pictures                           # the pictures above (f3d)"
     echo

@@ -4,7 +4,7 @@
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
 #include "body.h"
-#include "models.h"
+#include "pieces.h"
 #include "scarce.h"
 
 enum { MATERIALS = 4 };

@@ -4,7 +4,8 @@
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
 #include "body.h"
-#include "models.h"
+#include "pieces.h"
+#include "cell_moments.h"
 
 enum { NASTY = 20, NASTY_MATERIALS = 3 };
 
@@ -332,49 +333,6 @@ static gx_result make_body(const workload *w, uint32_t cells, gx_body **body, gx
     desc.materials = materials;
     desc.material_count = NASTY_MATERIALS;
     return gx_body_create(&desc, body, failure);
-}
-
-/* A sum of thousands of terms to its last digits */
-typedef struct long_sum {
-    double sum, rest;
-} long_sum;
-
-static void add_to(long_sum *s, double x) {
-    const double sum = s->sum + x, part = sum - s->sum;
-    s->rest += (s->sum - (sum - part)) + (x - part);
-    s->sum = sum;
-}
-
-/* Moments of the cells of a material by their mass matrices, about a place: the integrals of 1, x and x x times the
-   density. These are what the solver's inertia is made of. */
-static exact_moments moments_of_cells(const gx_body *body, uint32_t material, const double about[3]) {
-    long_sum sum[10];
-    exact_moments m;
-    uint32_t c;
-    int i, j, k, l, n;
-    memset(sum, 0, sizeof sum);
-    for (c = 0; c < body->cells.count; c++) {
-        const gxp_cell *cell = &body->cells.data[c];
-        double x[12];
-        int entry = 0;
-        if (!cell->kept || cell->material != material) continue;
-        gxp_element_positions(body, cell->element, x);
-        for (i = 0; i < 12; i++) x[i] -= about[i % 3];
-        for (i = 0; i < 4; i++)
-            for (j = i; j < 4; j++, entry++) {
-                const double mass = (i == j ? 1 : 2) * cell->mass[entry];
-                add_to(&sum[0], mass);
-                for (k = 0, n = 4; k < 3; k++) {
-                    add_to(&sum[1 + k], mass * 0.5 * (x[3 * i + k] + x[3 * j + k]));
-                    for (l = k; l < 3; l++, n++)
-                        add_to(&sum[n], mass * 0.5 * (x[3 * i + k] * x[3 * j + l] + x[3 * j + k] * x[3 * i + l]));
-                }
-            }
-    }
-    m.volume = sum[0].sum + sum[0].rest;
-    for (k = 0; k < 3; k++) m.first[k] = sum[1 + k].sum + sum[1 + k].rest;
-    for (k = 0; k < 6; k++) m.second[k] = sum[4 + k].sum + sum[4 + k].rest;
-    return m;
 }
 
 /* The same of the model's regions, exactly, without the density */

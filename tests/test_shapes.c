@@ -4,7 +4,7 @@
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
 #include "body.h"
-#include "models.h"
+#include "pieces.h"
 
 /* ---- surfaces ---- */
 
@@ -352,6 +352,89 @@ static gx_body *loaded(gx_body *body) {
     return other;
 }
 
+/* Do the boxes of a triangle and of an element meet? */
+static int boxes_meet(const wl_surface *s, size_t triangle, const gx_view *view, size_t element) {
+    int i, k, beyond = 0;
+    for (k = 0; k < 3; k++) {
+        double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+        for (i = 0; i < 3; i++) {
+            const double x = s->vertices[3 * s->triangles[3 * triangle + (size_t)i] + (size_t)k];
+            low[0] = fmin(low[0], x);
+            high[0] = fmax(high[0], x);
+        }
+        for (i = 0; i < 4; i++) {
+            const double x = view->positions[3 * view->elements[4 * element + (size_t)i] + (size_t)k];
+            low[1] = fmin(low[1], x);
+            high[1] = fmax(high[1], x);
+        }
+        beyond |= low[0] > high[1] || low[1] > high[0];
+    }
+    return !beyond;
+}
+
+/* Are the cells of an element the same in two bodies, with their mass matrices, to the last bit? */
+static int same_cells(const gx_body *a, const gx_body *b, uint32_t element) {
+    uint32_t i = element, j = element;
+    while (i != UINT32_MAX && j != UINT32_MAX) {
+        const gxp_cell *p = &a->cells.data[i], *q = &b->cells.data[j];
+        if (p->kept != q->kept || (p->kept && memcmp(p->mass, q->mass, sizeof p->mass) != 0)) return 0;
+        i = p->next;
+        j = q->next;
+    }
+    return i == j;
+}
+
+/* A vertex of the model is moved: cells in elements that its triangles do not come near stay as they were. Those that
+   may have an edge in common with one near them are left out: planes of the triangles go on to that edge and divide it,
+   so that sums have other terms. */
+START_TEST(edited_elsewhere) {
+    enum { MOVED = 700, CELLS = 14 };
+    workload w = some_shape(1);
+    wl_surface *s = &w.surfaces[0];
+    gx_body *before, *after;
+    gx_view was, is;
+    size_t e, t, same = 0, other = 0;
+    uint8_t *near, *node;
+    int i, time;
+    before = shaped(&w, CELLS);
+    was = view_of(before);
+    near = (uint8_t *)oracle_memory(NULL, was.element_count, 1);
+    memset(near, 0, was.element_count);
+    node = (uint8_t *)oracle_memory(NULL, was.node_count, 1);
+    memset(node, 0, was.node_count);
+    for (time = 0; time < 2; time++) {
+        for (t = 0; t < s->triangle_count; t++) {
+            const uint32_t *v = s->triangles + 3 * t;
+            if (v[0] != MOVED && v[1] != MOVED && v[2] != MOVED) continue;
+            for (e = 0; e < was.element_count; e++) near[e] |= (uint8_t)boxes_meet(s, t, &was, e);
+        }
+        for (i = 0; i < 3 && time == 0; i++) s->vertices[3 * MOVED + i] *= 0.97;
+    }
+    for (e = 0; e < 4 * was.element_count; e++) node[was.elements[e]] |= near[e / 4];
+    after = shaped(&w, CELLS);
+    is = view_of(after);
+    ck_assert_uint_eq(was.element_count, is.element_count);
+    ck_assert_mem_eq(was.elements, is.elements, 4 * was.element_count * sizeof *was.elements);
+    ck_assert_mem_eq(was.positions, is.positions, 3 * was.node_count * sizeof *was.positions);
+    for (e = 0; e < was.element_count; e++) {
+        const uint32_t *of = was.elements + 4 * e;
+        if (node[of[0]] + node[of[1]] + node[of[2]] + node[of[3]] >= 2)
+            other += !same_cells(before, after, (uint32_t)e);
+        else {
+            ck_assert_msg(same_cells(before, after, (uint32_t)e), "element %zu", e);
+            same++;
+        }
+    }
+    ck_assert(other > 0 && same > was.element_count - 200);
+    expect_moments(&w, &is, 1000, "edited");
+    free(near);
+    free(node);
+    gx_body_destroy(before);
+    gx_body_destroy(after);
+    wl_free(&w);
+}
+END_TEST
+
 /* Cut at rest and in motion, saved, loaded and cloned on the way: all take the same steps and cuts. */
 START_TEST(cut_saved_and_cloned) {
     static const int kinds[4] = {1, 3, 7, 0};
@@ -641,6 +724,7 @@ static Suite *suite(void) {
     ADD_SOME(tests, as_the_oracle_has_it, 40);
     ADD_SOME(tests, surfaces_that_overlap, 8);
     ADD_SOME(tests, cut_saved_and_cloned, 8);
+    tcase_add_test(tests, edited_elsewhere);
     tcase_add_test(tests, blade_and_drill);
     tcase_add_loop_test(tests, slivers_stay, 0, 3);
     tcase_add_test(tests, thin_shapes_bend);
