@@ -1664,6 +1664,7 @@ typedef struct gxp_touch {
     gxp_words roles;         /* of a surface's vertices: GXP_TOUCH_INSIDE ... */
     gxp_words ranked;        /* facets along a curve */
     gxp_words kept_leaves;   /* of these, those in reach of a sample */
+    double *gaps;            /* m, of kept_leaves: how far they are from the sample at least */
     double *passed;          /* 6 x near.count, rounded up: boxes of those leaves */
     gxp_words crowd, near;   /* boxes that may hold what many samples meet; leaves that do what some of them meet */
     uint32_t leaf_count;     /* a power of two */
@@ -1671,7 +1672,7 @@ typedef struct gxp_touch {
     gxp_touch_event *events; /* of a call */
     uint32_t event_capacity;
     uint32_t found, kept; /* pairs of contact: of this step; of the last one that succeeded */
-    uint32_t passed_capacity, pair_capacity, moved_capacity, facing_capacity, box_capacity, leaf_capacity,
+    uint32_t passed_capacity, pair_capacity, moved_capacity, facing_capacity, box_capacity, leaf_capacity, gap_capacity,
         weight_capacity, slip_capacity, force_capacity;
 } gxp_touch;
 #define GXP_TOUCH_COPIES 16u /* copies of a pair at most: those of a vertex and of a facet's corners */
@@ -1995,6 +1996,7 @@ static const gxp_column gxp_lists[] = {
     GXP_LIST(touch.events, touch.event_capacity, sizeof(gxp_touch_event)), GXP_WORDS(touch.touching),
     GXP_LIST(touch.boxes, touch.box_capacity, sizeof(gxp_touch_box)), GXP_WORDS(touch.sides),
     GXP_LIST(touch.leaves, touch.leaf_capacity, sizeof(gxp_touch_leaf)),
+    GXP_LIST(touch.gaps, touch.gap_capacity, sizeof(double)),
     GXP_LIST(touch.weights, touch.weight_capacity, sizeof(double)),
     GXP_LIST(touch.slips, touch.slip_capacity, 3 * sizeof(double)),
     GXP_LIST(touch.forces, touch.force_capacity, 3 * sizeof(double)),
@@ -12921,15 +12923,6 @@ static void gxp_fit_leaf(const gxp_touch *t, const gxp_touch_surface *s, uint32_
     }
 }
 
-/* Fits those leaves of touch.near that have not been fitted within this step. */
-static void gxp_fit_near(gxp_touch *t, const gxp_touch_surface *s) {
-    uint32_t i;
-    for (i = 0; i < t->near.count; i++) {
-        const uint32_t leaf = t->near.data[i] + 1 - t->leaf_count;
-        if (!t->leaves[leaf].fitted) gxp_fit_leaf(t, s, leaf, &t->leaves[leaf]);
-    }
-}
-
 /* Fits the boxes to the facets. */
 static void gxp_fit_facets(gx_body *body, const gxp_touch_surface *s, double dt) {
     gxp_touch *t = &body->touch;
@@ -13106,13 +13099,14 @@ static gx_result gxp_list_passed(gx_body *body, const double shift[3]) {
     return result;
 }
 
-/* Finds the leaves of touch.near that are within reach of a sample: `kept`. Returns how many */
+/* Finds the leaves of touch.near that are within reach of a sample: `kept`, with the nearest one first. gaps: how far
+   each is at least. Returns how many */
 static uint32_t gxp_keep_leaves(const gxp_touch *t, const double *x, double dt, const double shift[3], double reach,
-                                uint32_t *kept) {
+                                uint32_t *kept, double *gaps) {
     const size_t n = gxp_passed_stride(t);
     const double *side = t->passed;
     double from[3], to[3];
-    uint32_t count = 0;
+    uint32_t count = 0, first = 0;
     size_t i, j;
     int k;
     for (k = 0; k < 3; k++) {
@@ -13131,10 +13125,28 @@ static uint32_t gxp_keep_leaves(const gxp_touch *t, const double *x, double dt, 
         }
         for (j = 0; j < 4 && i + j < t->near.count; j++) {
             kept[count] = t->near.data[i + j];
+            gaps[count] = far[j] + reach;
             count += (uint32_t)(far[j] <= 0);
         }
     }
+    for (i = 1; i < count; i++)
+        if (gaps[i] < gaps[first]) first = (uint32_t)i;
+    if (first > 0) {
+        const uint32_t leaf = kept[first];
+        const double gap = gaps[first];
+        kept[first] = kept[0];
+        gaps[first] = gaps[0];
+        kept[0] = leaf;
+        gaps[0] = gap;
+    }
     return count;
+}
+
+/* Which of a leaf's facets are not beyond what a sample meets, as bits? far: above 0 where they are */
+static uint32_t gxp_facet_bits(const double far[GXP_TOUCH_LEAF]) {
+    uint32_t j, bits = 0;
+    for (j = 0; j < GXP_TOUCH_LEAF; j++) bits |= (uint32_t)(far[j] <= 0) << j;
+    return bits;
 }
 
 /* Which facets of a leaf may a sample meet within the step, as bits, if none is further than `near`? A facet that it
@@ -13146,7 +13158,7 @@ static uint32_t gxp_facets_ahead(const gxp_touch *t, const gxp_touch_leaf *leaf,
     const double spread = dt * leaf->spread, beside = GXP_TOUCH_BESIDE * v->size + bit;
     const double way[3] = {dt * (leaf->speed[0] - x[3]), dt * (leaf->speed[1] - x[4]), dt * (leaf->speed[2] - x[5])};
     double far[GXP_TOUCH_LEAF], height[GXP_TOUCH_LEAF], wide[GXP_TOUCH_LEAF];
-    uint32_t n, j, bits = 0;
+    uint32_t n, j;
     for (j = 0; j < GXP_TOUCH_LEAF; j++) { /* compilers make vectors of these loops if they are as plain as that */
         const double a = leaf->normal[0][j], b = leaf->normal[1][j], c = leaf->normal[2][j];
         const double facing = a * x[6] + b * x[7] + c * x[8] + GXP_TOUCH_FACING * (1 - 1e-9);
@@ -13158,6 +13170,7 @@ static uint32_t gxp_facets_ahead(const gxp_touch *t, const gxp_touch_leaf *leaf,
         height[j] = h;
         wide[j] = beside + GXP_TOUCH_SLANT * off;
     }
+    if (gxp_facet_bits(far) == 0) return 0;
     for (n = 0; n < 3; n++)
         for (j = 0; j < GXP_TOUCH_LEAF; j++) {
             const double a = leaf->out[n][0][j], b = leaf->out[n][1][j], c = leaf->out[n][2][j];
@@ -13166,8 +13179,7 @@ static uint32_t gxp_facets_ahead(const gxp_touch *t, const gxp_touch_leaf *leaf,
             const double least = end < out ? end : out, now = height[j] > 0 ? least : out;
             far[j] = GXP_MOST(far[j], now);
         }
-    for (j = 0; j < GXP_TOUCH_LEAF; j++) bits |= (uint32_t)(far[j] <= 0) << j;
-    return bits;
+    return gxp_facet_bits(far);
 }
 
 /* Finds the facet that a vertex meets among those of touch.near. best: its vertex, and a facet that it meets or
@@ -13179,9 +13191,11 @@ static void gxp_seek_facet(const gx_body *body, const gxp_touch_surface *s, doub
     const double *x = t->moved + 9 * (size_t)best->sample, slack = gxp_touch_slack(t, v) * (1 + 1e-9);
     double near = gxp_pair_slack(s, best, slack);
     uint32_t *kept = t->kept_leaves.data, i, bits, facet;
-    const uint32_t count = gxp_keep_leaves(t, x, dt, shift, near + 1e-9 * v->size, kept);
+    const uint32_t count = gxp_keep_leaves(t, x, dt, shift, near + 1e-9 * v->size, kept, t->gaps);
     for (i = 0; i < count; i++) {
         const uint32_t leaf = kept[i] + 1 - t->leaf_count;
+        if (t->gaps[i] > near + 1e-9 * v->size) continue;
+        if (!t->leaves[leaf].fitted) gxp_fit_leaf(t, s, leaf, &t->leaves[leaf]);
         bits = gxp_facets_ahead(t, &t->leaves[leaf], v, x, dt, near);
         for (facet = GXP_TOUCH_LEAF * leaf; bits > 0; bits >>= 1, facet++)
             if (bits & 1 && facet != best->facet) {
@@ -13215,8 +13229,10 @@ static gx_result gxp_seek_few(gx_body *body, const gxp_touch_surface *s, double 
     for (k = 0; k < 3; k++)
         shift[k] = 0.5 * (crowd.own.to.low[k] + crowd.own.to.high[k] - crowd.own.from.low[k] - crowd.own.from.high[k]);
     if (result == GX_OK) result = gxp_start_words(body, &t->kept_leaves, t->near.count + 1);
+    if (result == GX_OK)
+        result = gxp_reserve(&body->config.allocator, &t->gaps, sizeof *t->gaps, 0, &t->gap_capacity,
+                             (size_t)t->near.count + 1);
     if (result == GX_OK) result = gxp_list_passed(body, shift);
-    if (result == GX_OK) gxp_fit_near(t, s);
     for (i = 0; i < count && result == GX_OK; i++) {
         if (t->near.count > 0) gxp_seek_facet(body, s, dt, shift, &best[i]);
         s->guesses.data[samples[i]] = best[i].facet;
