@@ -73,12 +73,10 @@ await page.evaluate(`
     Object.assign(page.viewer.camera, {yaw: -0.75, pitch: 0.2, zoom: 1.2});
     undefined`);
 await move(40, 320);
-await stroke([140, 250], [500, 205], 24);
-await glide([360, 60], 30);
-await stroke([330, 40], [318, 300], 24);
-await glide([480, 160], 24);
-await stroke([500, 120], [140, 150], 24);
-await glide([60, 300], 60);
+await stroke([130, 250], [510, 205], 24);
+await glide([345, 40], 60);
+await stroke([335, 25], [316, 437], 30);
+await glide([60, 340], 90);
 const last = names.pop(), file = `${pictures}/cut.webp`;
 execFileSync("img2webp", ["-loop", "0", "-lossy", "-q", "80", "-m", "6", "-d", milliseconds, ...names,
                           "-d", rest, last, "-o", file], {stdio: ["ignore", "ignore", "inherit"]});
