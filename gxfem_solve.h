@@ -1431,6 +1431,8 @@ typedef struct gxsp_chunk {
     uint32_t first_partial, partial_count; /* into partials: one per component of its nodes, ascending */
     uint32_t class_index;                  /* see gxsp_class */
     uint32_t edge_count;                   /* see gxsp_edges; 0: not known */
+    uint32_t pair_count;                   /* see gxsp_pairs; at least; 0: not known */
+    uint8_t dirty;                         /* of an update: a node has a dirty parent */
     int open;                              /* made by an update, with room for GXSP_CHUNK_BLOCKS */
     gxs_material_kind kind;
 } gxsp_chunk;
@@ -3235,6 +3237,7 @@ static uint32_t gxsp_root(uint32_t *parent, uint32_t i) {
 }
 
 static void gxsp_join(uint32_t *parent, uint32_t i, uint32_t j) {
+    if (parent[i] == parent[j]) return; /* nearly always they are joined */
     i = gxsp_root(parent, i);
     j = gxsp_root(parent, j);
     if (i < j)
@@ -4462,9 +4465,11 @@ typedef struct gxsp_transfer {
 static void gxsp_join_nodes(gxsp_transfer *transfer, uint32_t i, uint32_t j) {
     const uint64_t *a = transfer->key + 4 * (size_t)i, *b = transfer->key + 4 * (size_t)j;
     uint32_t p, q;
-    for (p = 0; p < 4; p++)
+    for (p = 0; p < 4; p++) {
+        if (a[p] == 0) continue;
         for (q = 0; q < 4; q++)
-            if (a[p] == b[q] && a[p] != 0) gxsp_join(transfer->forest, 4 * i + p, 4 * j + q);
+            if (a[p] == b[q]) gxsp_join(transfer->forest, 4 * i + p, 4 * j + q);
+    }
 }
 
 /* Lattice points and weights of a level's nodes, before clusters are joined. place: n x 3, in spacings of the next
@@ -4561,22 +4566,31 @@ static void gxsp_list_add(gxsp_list *list, uint32_t row, uint32_t column) {
 }
 
 /* Rows of a level's matrix from its entries (row, column) on and above the diagonal, which may be listed more than
- * once */
-static void gxsp_rows_make(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *level, uint32_t (*list)[2],
-                           uint32_t listed) {
+ * once. before: the level before an update, whose entries between nodes that are not dirty stay and are not listed;
+ * NULL: all are listed */
+static void gxsp_rows_make(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *level, const gxsp_list *list,
+                           const gxsp_level *before, const uint8_t *dirty) {
+    const uint32_t old = before ? before->n : 0;
     uint32_t *start = (uint32_t *)gxsp_take(scratch, (size_t)level->n + 2, sizeof(uint32_t));
-    uint32_t *columns = (uint32_t *)gxsp_take(scratch, listed, sizeof(uint32_t));
+    uint32_t *listed = (uint32_t *)gxsp_take(scratch, list->count, sizeof(uint32_t));
+    uint32_t *columns =
+        (uint32_t *)gxsp_take(scratch, (old > 0 ? before->start[old] : 0) + list->count, sizeof(uint32_t));
     uint32_t *seen = (uint32_t *)gxsp_take(scratch, level->n, sizeof(uint32_t)), i, k, count = 0;
     if (scratch->failed) return;
-    for (i = 0; i < listed; i++) start[list[i][0] + 2]++;
+    for (i = 0; i < list->count; i++) start[list->pair[i][0] + 2]++;
     for (i = 0; i < level->n; i++) start[i + 2] += start[i + 1];
-    for (i = 0; i < listed; i++) columns[start[list[i][0] + 1]++] = list[i][1];
+    for (i = 0; i < list->count; i++) listed[start[list->pair[i][0] + 1]++] = list->pair[i][1];
     for (i = 0; i < level->n; i++) {
         level->start[i] = count;
+        for (k = i < old ? before->start[i] : 0; i < old && !dirty[i] && k < before->start[i + 1]; k++)
+            if (!dirty[before->column[k]]) {
+                seen[before->column[k]] = i + 1;
+                columns[count++] = before->column[k];
+            }
         for (k = start[i]; k < start[i + 1]; k++)
-            if (seen[columns[k]] != i + 1) {
-                seen[columns[k]] = i + 1;
-                columns[count++] = columns[k]; /* writes never overtake reads */
+            if (seen[listed[k]] != i + 1) {
+                seen[listed[k]] = i + 1;
+                columns[count++] = listed[k];
             }
         gxsp_sort_row(columns + level->start[i], count - level->start[i]);
     }
@@ -4609,11 +4623,13 @@ static void gxsp_coarse_rows(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *le
     list.scratch = scratch;
     for (i = 0; i < next->n; i++) gxsp_list_add(&list, i, i);
     for (i = 0; i < level->n && !scratch->failed; i++) {
-        for (k = 4 * level->start[i], count = 0; k < 4 * level->start[i + 1]; k++) {
-            const uint32_t parent = level->parent[level->column[k / 4]][k % 4];
-            if (parent == GXSP_NONE || seen[parent] == i + 1) continue;
-            seen[parent] = i + 1;
-            met[count++] = parent;
+        for (k = level->start[i], count = 0; k < level->start[i + 1]; k++) {
+            const uint32_t *parent = level->parent[level->column[k]];
+            for (p = 0; p < 4; p++) {
+                if (parent[p] == GXSP_NONE || seen[parent[p]] == i + 1) continue;
+                seen[parent[p]] = i + 1;
+                met[count++] = parent[p];
+            }
         }
         for (p = 0; p < 4; p++)
             for (t = 0; t < count && level->parent[i][p] != GXSP_NONE; t++)
@@ -4621,7 +4637,7 @@ static void gxsp_coarse_rows(gxsp_pool *pool, gxsp_pool *scratch, gxsp_level *le
                     gxsp_list_add(&list, met[t] < level->parent[i][p] ? met[t] : level->parent[i][p],
                                   met[t] < level->parent[i][p] ? level->parent[i][p] : met[t]);
     }
-    if (!scratch->failed) gxsp_rows_make(pool, scratch, next, list.pair, list.count);
+    if (!scratch->failed) gxsp_rows_make(pool, scratch, next, &list, NULL, NULL);
 }
 
 /* Adds the level after levels[depth], depth > 0, with twice its spacing. 0: it would not be much smaller. What it takes
@@ -4681,16 +4697,19 @@ static gxsp_graph gxsp_graph_make(gxsp_pool *scratch, const gxsp_level *level) {
     return graph;
 }
 
-/* Appends the connected component of a seed to order, breadth first. place: GXSP_NONE for nodes not met yet.
- * Returns the new length. */
+/* Appends the connected component of a seed to order, breadth first. place: GXSP_NONE for nodes not met yet. cost:
+ * multiplications of a factorisation so far; once they are more than the limit, it stops. Returns the new length. */
 static uint32_t gxsp_order_component(const gxsp_graph *graph, uint32_t seed, uint32_t count, uint32_t *order,
-                                     uint32_t *place) {
+                                     uint32_t *place, double limit, double *cost) {
     uint32_t done = count, k;
     place[seed] = count;
     order[count++] = seed;
-    for (; done < count; done++)
+    *cost += 13.5;
+    for (; done < count && *cost <= limit; done++)
         for (k = graph->start[order[done]]; k < graph->start[order[done] + 1]; k++)
             if (place[graph->other[k]] == GXSP_NONE) {
+                const double width = count - done + 1; /* no neighbour comes before the one that it is met from */
+                *cost += 13.5 * width * width;         /* three rows, each of width squared / 2 */
                 place[graph->other[k]] = count;
                 order[count++] = graph->other[k];
             }
@@ -4706,21 +4725,18 @@ static uint32_t gxsp_first_place(const gxsp_graph *graph, const uint32_t *order,
 }
 
 /* Order for a small envelope: one connected component after the other, each breadth first from a node that was last
- * from some other. place: n, scratch. Returns the multiplications of a factorisation. */
-static double gxsp_order_level(const gxsp_graph *graph, uint32_t *order, uint32_t *place) {
+ * from some other. place: n, scratch. Returns the multiplications of a factorisation; if they are more than the limit,
+ * the order is not finished. */
+static double gxsp_order_level(const gxsp_graph *graph, uint32_t *order, uint32_t *place, double limit) {
     uint32_t seed, i, k, count = 0, end;
-    double cost = 0;
+    double cost = 0, ignored = 0;
     memset(place, 0xff, graph->n * sizeof *place);
-    for (seed = 0; seed < graph->n; seed++) {
+    for (seed = 0; seed < graph->n && cost <= limit; seed++) {
         if (place[seed] != GXSP_NONE) continue;
-        end = gxsp_order_component(graph, seed, count, order, place);
+        end = gxsp_order_component(graph, seed, count, order, place, HUGE_VAL, &ignored);
         k = order[end - 1];
         for (i = count; i < end; i++) place[order[i]] = GXSP_NONE;
-        count = gxsp_order_component(graph, k, count, order, place);
-    }
-    for (i = 0; i < graph->n; i++) {
-        const double width = i - gxsp_first_place(graph, order, place, i) + 1;
-        cost += 13.5 * width * width; /* three rows, each of width squared / 2 */
+        count = gxsp_order_component(graph, k, count, order, place, limit, &cost);
     }
     return cost;
 }
@@ -4729,9 +4745,9 @@ static double gxsp_order_level(const gxsp_graph *graph, uint32_t *order, uint32_
 static int gxsp_factors(gxsp_pool *scratch, const gxsp_level *level, size_t copies) {
     gxsp_owned *mark = scratch->last;
     uint32_t *order = (uint32_t *)gxsp_take(scratch, 2 * (size_t)level->n, sizeof(uint32_t));
+    const double limit = GXSP_FACTOR_COST * (double)copies;
     const gxsp_graph graph = gxsp_graph_make(scratch, level);
-    const int factors =
-        !scratch->failed && gxsp_order_level(&graph, order, order + level->n) <= GXSP_FACTOR_COST * (double)copies;
+    const int factors = !scratch->failed && gxsp_order_level(&graph, order, order + level->n, limit) <= limit;
     gxsp_release_to(scratch, mark);
     return factors;
 }
@@ -4756,7 +4772,7 @@ static void gxsp_factor_make(gxsp_system *system, gxsp_pool *scratch) {
     factor->row = (size_t *)gxsp_take(&system->multigrid.pool, level->n, sizeof(size_t));
     factor->x = (double *)gxsp_take(&system->multigrid.pool, factor->n, sizeof(double));
     if (scratch->failed || system->multigrid.pool.failed) return;
-    (void)gxsp_order_level(&graph, factor->order, place);
+    (void)gxsp_order_level(&graph, factor->order, place, HUGE_VAL);
     for (i = 0; i < level->n; i++) {
         const uint32_t first = 3 * gxsp_first_place(&graph, factor->order, place, i);
         factor->first[i] = first;
@@ -5036,21 +5052,14 @@ static void gxsp_pairs_carve(gxsp_system *system, gxsp_space *space, int numbers
         space, next < system->multigrid.level_count ? system->multigrid.levels[next].n : 0, sizeof *pairs->half);
 }
 
-/* Memory for listing the pairs of any chunk, in scratch, and the largest number of coarse nodes of a chunk */
+/* Memory for listing the pairs of any chunk, in scratch */
 static void gxsp_pairs_make(gxsp_system *system, gxsp_pool *scratch) {
     gxsp_space space = {NULL, 0};
-    uint32_t c;
     gxsp_pairs_carve(system, &space, 0);
     space.memory = (unsigned char *)gxsp_take(scratch, space.used, 1);
     space.used = 0;
     gxsp_pairs_carve(system, &space, 0);
     system->multigrid.pairs.round = system->multigrid.pairs.most = 0;
-    for (c = 0; c < system->mesh.chunk_count && !scratch->failed && !system->multigrid.fine; c++) {
-        gxsp_pairs_begin(system, &system->mesh.chunks[c]);
-        system->multigrid.pairs.most = system->multigrid.pairs.count > system->multigrid.pairs.most
-                                         ? system->multigrid.pairs.count
-                                         : system->multigrid.pairs.most;
-    }
 }
 
 /* Sets of a chunk's coarse nodes, as bits in `words` words */
@@ -5103,40 +5112,34 @@ static gxsp_sets gxsp_find_sets(gxsp_system *system, const gxsp_chunk *chunk, ui
 
 /* Lists the entries of level 1's matrix to which a chunk adds. dirty: by coarse node; only entries with a dirty
  * node are listed; NULL: all are. memory: see gxsp_find_sets */
-static void gxsp_list_pairs(gxsp_system *system, const gxsp_chunk *chunk, uint64_t *memory, const uint8_t *dirty,
+static void gxsp_list_pairs(gxsp_system *system, gxsp_chunk *chunk, uint64_t *memory, const uint8_t *dirty,
                             gxsp_list *list) {
     const uint32_t *node = system->multigrid.pairs.node;
     gxsp_sets sets;
     uint32_t i, k;
     gxsp_pairs_begin(system, chunk);
+    chunk->pair_count = system->multigrid.pairs.count;
     sets = gxsp_find_sets(system, chunk, memory);
-    for (i = 0; i < system->multigrid.pairs.count; i++)
-        for (k = 0; k < sets.words; k++) {
+    for (i = 1; i < system->multigrid.pairs.count; i++)
+        for (k = 0; k < sets.words && (!dirty || dirty[node[i]]); k++) {
             uint64_t set = sets.row[i * sets.words + k];
             uint32_t j;
-            for (j = 64 * k; set != 0; set >>= 1, j++)
-                if ((set & 1) && node[i] < node[j] && (!dirty || dirty[node[i]] || dirty[node[j]]))
+            for (j = 64 * k; set != 0; set >>= 1, j++) {
+                if (!(set & 1)) continue;
+                if (node[i] < node[j])
                     gxsp_list_add(list, node[i], node[j]);
+                else if (dirty && !dirty[node[j]]) /* the other one does not list it */
+                    gxsp_list_add(list, node[j], node[i]);
+            }
         }
-}
-
-/* Does a node of the chunk have a dirty parent? */
-static int gxsp_follows_dirty(const gxsp_system *system, const gxsp_chunk *chunk, const uint8_t *dirty) {
-    uint32_t i, k;
-    for (i = 0; i < chunk->node_count; i++)
-        for (k = 0; k < 4; k++) {
-            const uint32_t parent = system->multigrid.levels[0].parent[system->mesh.nodes[chunk->first_node + i]][k];
-            if (parent != GXSP_NONE && dirty[parent]) return 1;
-        }
-    return 0;
 }
 
 /* Pattern of level 1's matrix: two nodes are neighbours where an element has both as parents; every node is its own
- * neighbour. before: the level before an update; nodes that are in it and not dirty keep their neighbours. NULL:
- * all are found anew */
+ * neighbour. Also the largest number of coarse nodes of a chunk. before: the level before an update; nodes that are in
+ * it and not dirty keep their neighbours, chunks without dirty nodes their number. NULL: all are found anew */
 static void gxsp_first_pattern(gxsp_system *system, gxsp_pool *scratch, const gxsp_level *before,
                                const uint8_t *dirty) {
-    uint32_t c, i, k, nodes = 0;
+    uint32_t c, i, nodes = 0;
     uint64_t *memory;
     gxsp_list list;
     memset(&list, 0, sizeof list);
@@ -5146,16 +5149,17 @@ static void gxsp_first_pattern(gxsp_system *system, gxsp_pool *scratch, const gx
     /* four parents to a node */
     memory = (uint64_t *)gxsp_take(scratch, (6 * (size_t)nodes + 1) * (nodes / 16 + 1), sizeof(uint64_t));
     if (scratch->failed) return;
-    for (i = 0; i < system->multigrid.levels[1].n; i++) gxsp_list_add(&list, i, i);
-    for (i = 0; before && i < before->n; i++)
-        for (k = before->start[i]; k < before->start[i + 1] && !dirty[i]; k++)
-            if (before->column[k] > i && !dirty[before->column[k]]) gxsp_list_add(&list, i, before->column[k]);
-    for (c = 0; c < system->mesh.chunk_count; c++)
-        if (!before || gxsp_follows_dirty(system, &system->mesh.chunks[c], dirty))
-            gxsp_list_pairs(system, &system->mesh.chunks[c], memory, before ? dirty : NULL, &list);
+    for (i = 0; i < system->multigrid.levels[1].n; i++)
+        if (!before || dirty[i]) gxsp_list_add(&list, i, i);
+    for (c = 0; c < system->mesh.chunk_count; c++) {
+        gxsp_chunk *chunk = &system->mesh.chunks[c];
+        if (!before || chunk->dirty || chunk->pair_count == 0)
+            gxsp_list_pairs(system, chunk, memory, before ? dirty : NULL, &list);
+        if (chunk->pair_count > system->multigrid.pairs.most) system->multigrid.pairs.most = chunk->pair_count;
+    }
     if (system->affine.count > 0) gxsp_nested_pattern(system, scratch, before ? dirty : NULL, &list);
     if (!scratch->failed)
-        gxsp_rows_make(&system->multigrid.pool, scratch, &system->multigrid.levels[1], list.pair, list.count);
+        gxsp_rows_make(&system->multigrid.pool, scratch, &system->multigrid.levels[1], &list, before, dirty);
 }
 
 /* Entries (row, column), row <= column, to which an element adds. Returns how many. */
@@ -5176,26 +5180,26 @@ static uint32_t gxsp_element_pairs(const gxsp_system *system, const uint32_t *co
  * element; every copy is its own neighbour. */
 static void gxsp_fine_make(gxsp_system *system, gxsp_pool *scratch) {
     gxsp_level *fine = &system->multigrid.levels[0];
-    uint32_t(*list)[2] = NULL, c, b, i, count, room = 0;
+    uint32_t c, b, i;
+    gxsp_list list = {NULL, NULL, 0, 0};
     int l, pair, pass;
     system->multigrid.fine = (gxsp_fine *)gxsp_take(&system->pool, system->mesh.block_count, sizeof(gxsp_fine));
     fine->start = (uint32_t *)gxsp_take(&system->pool, system->model.n + 1, sizeof(uint32_t));
     fine->inverse = (float *)gxsp_take(&system->pool, 6 * system->model.n, sizeof(float));
     if (system->pool.failed) return;
     for (pass = 0; pass < 2; pass++) { /* count, then list */
-        if (pass == 1 && !(list = (uint32_t(*)[2])gxsp_take(scratch, room, sizeof *list))) return;
-        for (i = 0, count = 0; i < fine->n; i++, count++)
-            if (list) list[count][0] = list[count][1] = i;
+        if (pass == 1 && !(list.pair = (uint32_t(*)[2])gxsp_take(scratch, list.count, sizeof *list.pair))) return;
+        for (i = 0, list.count = 0; i < fine->n; i++, list.count++)
+            if (list.pair) list.pair[list.count][0] = list.pair[list.count][1] = i;
         for (c = 0; c < system->mesh.chunk_count; c++)
             for (b = 0; b < system->mesh.chunks[c].block_count; b++)
                 for (l = 0; l < GXSP_LANES; l++) {
                     uint32_t copies[4], pairs[136][2];
                     gxsp_lane_copies(system, &system->mesh.chunks[c], b, l, copies);
-                    count += gxsp_element_pairs(system, copies, list ? list + count : pairs);
+                    list.count += gxsp_element_pairs(system, copies, list.pair ? list.pair + list.count : pairs);
                 }
-        room = count;
     }
-    gxsp_rows_make(&system->pool, scratch, fine, list, count);
+    gxsp_rows_make(&system->pool, scratch, fine, &list, NULL, NULL);
     if (!scratch->failed) fine->block = (float *)gxsp_take(&system->pool, gxsp_block_numbers(fine), sizeof(float));
     if (scratch->failed || system->pool.failed) return;
     for (c = 0; c < system->mesh.chunk_count; c++)
@@ -7915,7 +7919,7 @@ static void gxsp_coarse_elements(gxsp_system *system, const uint8_t *dirty) {
     uint32_t c, i;
     for (c = 0; c < system->mesh.chunk_count; c++) {
         const gxsp_chunk *chunk = &system->mesh.chunks[c];
-        if (dirty && !gxsp_follows_dirty(system, chunk, dirty)) continue;
+        if (dirty && !chunk->dirty) continue;
         gxsp_edge_blocks(system, chunk);
         gxsp_pairs_begin(system, chunk);
         gxsp_pairs_find(&system->multigrid.pairs, next);
@@ -9142,7 +9146,7 @@ static int gxsp_renew_chunk(gxsp_renewal *update, gxsp_chunk *chunk, uint32_t ed
         }
     chunk->block_count = (used + GXSP_LANES - 1) / GXSP_LANES;
     chunk->node_count = gxsp_number_nodes(copies, chunk->block_count * GXSP_LANES, numbers, nodes);
-    chunk->edge_count = 0;
+    chunk->edge_count = chunk->pair_count = 0;
     gxsp_set_corners(chunk, copies);
     return 1;
 }
@@ -9550,44 +9554,83 @@ static void gxsp_renew_components(gxsp_renewal *update) {
 /* In: dirty nodes of level 1: those that touched copies follow. Out: clusters of dirty nodes, new levels below
  * the model, and numbers. Numbers of entries between other nodes are copied. */
 
-/* Copies i and j are neighbours: they are in one cluster of each dirty node that both follow. */
-static void gxsp_join_parents(const gxsp_renewal *update, uint32_t i, uint32_t j, uint32_t *forest) {
-    const gxsp_level *fine = &update->system->multigrid.levels[0];
-    uint32_t p, q;
+/* Does a copy have a dirty parent? */
+static int gxsp_follows_dirty(const gxsp_system *system, uint32_t copy, const uint8_t *dirty) {
+    const uint32_t *parent = system->multigrid.levels[0].parent[copy];
+    int k, any = 0;
+    for (k = 0; k < 4; k++) any |= parent[k] != GXSP_NONE && dirty[parent[k]];
+    return any;
+}
+
+/* Scratch for joining the clusters of dirty nodes */
+typedef struct gxsp_clusters {
+    uint32_t *forest; /* n x 4 */
+    uint32_t *first;  /* by coarse node: the first slot of neighbours that follows it; valid where seen is round */
+    uint32_t *seen;   /* by coarse node, 0 at first */
+    uint32_t round;   /* one for each set of neighbours */
+} gxsp_clusters;
+
+/* Joins the slots of a copy with those before it in its round that follow the same dirty nodes. Has no branch on
+ * whether there are any: processors could not predict it. */
+static inline void gxsp_join_slots(const gxsp_renewal *update, uint32_t copy, gxsp_clusters *clusters) {
+    const uint32_t *parent = update->system->multigrid.levels[0].parent[copy];
+    uint32_t p;
     for (p = 0; p < 4; p++) {
-        const uint32_t parent = fine->parent[i][p];
-        if (parent == GXSP_NONE || !update->dirty[parent]) continue;
-        for (q = 0; q < 4 && fine->parent[j][q] != parent; q++)
-            ;
-        if (q < 4) gxsp_join(forest, 4 * i + p, 4 * j + q);
+        const uint32_t slot = 4 * copy + p;
+        uint32_t first;
+        if (parent[p] == GXSP_NONE || !update->dirty[parent[p]]) continue;
+        first = clusters->seen[parent[p]] == clusters->round ? clusters->first[parent[p]] : slot;
+        clusters->seen[parent[p]] = clusters->round;
+        clusters->first[parent[p]] = first;
+        gxsp_join(clusters->forest, first, slot);
     }
 }
 
-/* Joins the clusters of dirty nodes anew. forest: n x 4 */
-static void gxsp_join_dirty(gxsp_renewal *update, uint32_t *forest) {
+/* Copies i and j are neighbours: they are in one cluster of each dirty node that both follow. */
+static void gxsp_join_neighbours(const gxsp_renewal *update, uint32_t i, uint32_t j, gxsp_clusters *clusters) {
+    clusters->round++;
+    gxsp_join_slots(update, i, clusters);
+    gxsp_join_slots(update, j, clusters);
+}
+
+/* The corners of each element of a chunk are neighbours. Marks the chunk as dirty if one of its nodes is. */
+static void gxsp_join_chunk(const gxsp_renewal *update, gxsp_chunk *chunk, gxsp_clusters *clusters) {
+    const uint32_t *copies = update->system->mesh.nodes + chunk->first_node;
+    uint8_t dirty[4 * GXSP_CHUNK]; /* by node of the chunk */
+    uint32_t b, i;
+    int l, k;
+    chunk->dirty = 0;
+    for (i = 0; i < chunk->node_count; i++)
+        chunk->dirty |= dirty[i] = (uint8_t)gxsp_follows_dirty(update->system, copies[i], update->dirty);
+    for (b = 0; b < chunk->block_count && chunk->dirty; b++)
+        for (l = 0; l < GXSP_LANES; l++, clusters->round++) {
+            const gxsp_corners *corner = &chunk->corners[b];
+            if (!(dirty[corner->node[0][l]] | dirty[corner->node[1][l]] | dirty[corner->node[2][l]] |
+                  dirty[corner->node[3][l]]))
+                continue;
+            for (k = 0; k < 4 && chunk->rest[b].weight[l] > 0; k++)
+                if (dirty[corner->node[k][l]]) gxsp_join_slots(update, copies[corner->node[k][l]], clusters);
+        }
+}
+
+/* Joins the clusters of dirty nodes anew. */
+static void gxsp_join_dirty(gxsp_renewal *update, gxsp_clusters *clusters) {
     gxsp_system *system = update->system;
     const gxsp_level *fine = &system->multigrid.levels[0];
     uint32_t c, e, slot;
-    for (slot = 0; slot < 4 * fine->n; slot++) forest[slot] = slot;
-    for (c = 0; c < system->mesh.chunk_count; c++) {
-        const uint32_t *copies = system->mesh.nodes + system->mesh.chunks[c].first_node;
-        if (!gxsp_follows_dirty(system, &system->mesh.chunks[c], update->dirty)) continue;
-        gxsp_list_edges(system, &system->mesh.chunks[c]);
-        for (e = 1; e < system->multigrid.edges.count; e++)
-            gxsp_join_parents(update, copies[system->multigrid.edges.ends[e] >> 16],
-                              copies[system->multigrid.edges.ends[e] & 0xffff], forest);
-    }
+    for (slot = 0; slot < 4 * fine->n; slot++) clusters->forest[slot] = slot;
+    for (c = 0; c < system->mesh.chunk_count; c++) gxsp_join_chunk(update, &system->mesh.chunks[c], clusters);
     for (e = 0; e < 4 * system->model.follower_count; e++)
         if (!gxsp_is_hidden(system, system->model.followers[e / 4].copy) &&
             fabs(system->model.followers[e / 4].weight[e % 4]) > 0)
-            gxsp_join_parents(update, system->model.followers[e / 4].copy, system->model.followers[e / 4].master[e % 4],
-                              forest);
+            gxsp_join_neighbours(update, system->model.followers[e / 4].copy,
+                                 system->model.followers[e / 4].master[e % 4], clusters);
     for (c = 0; c < system->affine.block_count; c++)
         for (e = 0; e < 6 * GXSP_LANES; e++) {
             const gxsp_affine_block *block = &system->affine.blocks[c];
             const uint32_t l = e % GXSP_LANES, i = block->vector[gxsp_edge_ends[e / GXSP_LANES][0]][l],
                            j = block->vector[gxsp_edge_ends[e / GXSP_LANES][1]][l];
-            if (block->rest.weight[l] > 0) gxsp_join_parents(update, i, j, forest);
+            if (block->rest.weight[l] > 0) gxsp_join_neighbours(update, i, j, clusters);
         }
 }
 
@@ -9664,7 +9707,7 @@ static int gxsp_renew_numbers(gxsp_renewal *update, const gxsp_level *before, co
     pass.rate = system->model.scale * system->coarse.rate;
     pass.from = system->coarse.displacement;
     for (c = 0; c < system->mesh.chunk_count; c++)
-        if (gxsp_follows_dirty(system, &system->mesh.chunks[c], dirty)) {
+        if (system->mesh.chunks[c].dirty) {
             system->state.chunk_still[c] = 0;
             gxsp_task_linearise(&pass, c);
         }
@@ -9684,8 +9727,7 @@ static int gxsp_renew_numbers(gxsp_renewal *update, const gxsp_level *before, co
  * more than making some? */
 static int gxsp_most_are_dirty(const gxsp_system *system, const uint8_t *dirty) {
     uint32_t c, count = 0;
-    for (c = 0; c < system->mesh.chunk_count; c++)
-        count += (uint32_t)gxsp_follows_dirty(system, &system->mesh.chunks[c], dirty);
+    for (c = 0; c < system->mesh.chunk_count; c++) count += system->mesh.chunks[c].dirty;
     for (c = 0; c < system->affine.block_count; c++) /* eight of these elements cost about as much as a chunk */
         count += (uint32_t)gxsp_block_dirty(system, &system->affine.blocks[c], dirty);
     return (double)count > GXSP_DIRTY * ((double)system->mesh.chunk_count + system->affine.block_count);
@@ -9743,20 +9785,41 @@ static void gxsp_renew_nested(gxsp_renewal *update, const gxsp_level *before, co
     gxsp_nested_end(system, update->scratch);
 }
 
-static void gxsp_renew_levels(gxsp_renewal *update) {
+/* Is all below the model as it was? Then no cluster has changed, and no chunk has other coarse nodes. */
+static int gxsp_levels_stay(const gxsp_renewal *update) {
+    const gxsp_system *system = update->system;
+    uint32_t c, i;
+    if (system->affine.count > 0) return 0;
+    for (i = 0; i < system->multigrid.levels[1].n; i++)
+        if (update->dirty[i]) return 0;
+    for (c = 0; c < system->mesh.chunk_count; c++)
+        if (system->mesh.chunks[c].pair_count == 0) return 0;
+    return 1;
+}
+
+/* Do coarse numbers serve no longer, so that the next step makes all anew? Springs and contact are no longer known. */
+static int gxsp_coarse_is_old(const gxsp_system *system) {
+    return system->coarse.stiffness > 0 || system->coarse.quick || system->coarse.worn || gxsp_coarse_ends(system);
+}
+
+/* Levels below the model, with numbers if all but a few serve on */
+static void gxsp_remake_levels(gxsp_renewal *update) {
     gxsp_system *system = update->system;
     gxsp_pool *scratch = update->scratch, old = system->multigrid.pool;
     gxsp_level before = system->multigrid.levels[1];
     const double *affine = system->affine.count > 0 ? system->affine.block : NULL;
-    uint32_t *forest = (uint32_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint32_t));
     uint32_t *from = (uint32_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint32_t));
     uint8_t *dirty = NULL;
+    gxsp_clusters clusters;
+    clusters.forest = (uint32_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint32_t));
+    clusters.first = (uint32_t *)gxsp_take(scratch, before.n, sizeof(uint32_t));
+    clusters.seen = (uint32_t *)gxsp_take(scratch, before.n, sizeof(uint32_t));
+    clusters.round = 1;
     system->multigrid.pool = gxsp_pool_make(&old.allocator);
-    gxsp_edges_make(system, scratch);
-    if (!scratch->failed && !system->multigrid.pool.failed) {
+    if (!scratch->failed) {
         gxsp_drop_fixed(update);
-        gxsp_join_dirty(update, forest);
-        dirty = gxsp_renew_coarse_nodes(update, &before, from, gxsp_number_dirty(update, forest, from));
+        gxsp_join_dirty(update, &clusters);
+        dirty = gxsp_renew_coarse_nodes(update, &before, from, gxsp_number_dirty(update, clusters.forest, from));
     }
     if (!scratch->failed && !system->multigrid.pool.failed) {
         if (affine)
@@ -9766,11 +9829,23 @@ static void gxsp_renew_levels(gxsp_renewal *update) {
     }
     if (!scratch->failed && !system->multigrid.pool.failed) gxsp_share_memory(system);
     if (!scratch->failed && !system->multigrid.pool.failed && !system->pool.failed && system->coarse.rate >= 0 &&
-        (system->coarse.stiffness > 0 || system->coarse.quick || system->coarse.worn || gxsp_coarse_ends(system) ||
-         gxsp_most_are_dirty(system, dirty) || !gxsp_renew_numbers(update, &before, affine, dirty)))
-        /* the next step makes all numbers anew; springs and contact are no longer known */
+        (gxsp_coarse_is_old(system) || gxsp_most_are_dirty(system, dirty) ||
+         !gxsp_renew_numbers(update, &before, affine, dirty)))
         system->coarse.rate = -1;
     gxsp_release_to(&old, NULL);
+}
+
+static void gxsp_renew_levels(gxsp_renewal *update) {
+    gxsp_system *system = update->system;
+    gxsp_edges_make(system, update->scratch);
+    if (update->scratch->failed) return;
+    if (!gxsp_levels_stay(update)) {
+        gxsp_remake_levels(update);
+        return;
+    }
+    gxsp_count_edges(system);
+    gxsp_share_memory(system);
+    if (gxsp_coarse_is_old(system)) system->coarse.rate = -1;
 }
 
 /* History of steps, and data that depends on all copies */
