@@ -2235,11 +2235,25 @@ static size_t gxp_row_size(uint32_t table, uint32_t use) {
 /* >>basics: sorting, hashing, sets, vectors ------------------------------------------------------------------------ */
 /* Small functions that know nothing of a body. They change nothing but what they are given. */
 
+/* Sorts ascending, by insertion. */
+static void gxp_sort_few(uint32_t *w, uint32_t count) {
+    uint32_t i, j;
+    for (i = 1; i < count; i++) {
+        const uint32_t k = w[i];
+        for (j = i; j > 0 && w[j - 1] > k; j--) w[j] = w[j - 1];
+        w[j] = k;
+    }
+}
+
 /* Sorts ascending by the bits from `bit` down; words without the bit come first [radix exchange, Hildebrandt and Isbitz
    1959]. */
 static void gxp_sort_by_bits(uint32_t *w, uint32_t count, uint32_t bit) {
     while (count > 1 && bit != 0) {
         uint32_t i = 0, j = count;
+        if (count <= 16) {
+            gxp_sort_few(w, count);
+            return;
+        }
         while (i < j) {
             if (!(w[i] & bit)) {
                 i++;
@@ -2259,10 +2273,11 @@ static void gxp_sort_by_bits(uint32_t *w, uint32_t count, uint32_t bit) {
 }
 
 static void gxp_sort_unique(gxp_words *w) {
-    uint32_t i, n = 0, all = 0, bit = 1;
+    uint32_t i, n = 0, all = 0, bit = 1, falls = 0;
     for (i = 0; i < w->count; i++) all |= w->data[i];
+    for (i = 1; i < w->count; i++) falls += w->data[i] < w->data[i - 1];
     while (all >> 1 >= bit) bit <<= 1;
-    gxp_sort_by_bits(w->data, w->count, bit);
+    if (falls > 0) gxp_sort_by_bits(w->data, w->count, bit);
     for (i = 0; i < w->count; i++)
         if (n == 0 || w->data[i] != w->data[n - 1]) w->data[n++] = w->data[i];
     w->count = n;
