@@ -10,17 +10,25 @@
      >>cutting    strokes, going back
      >>moving     a hand that pulls, steps */
 #define GXFEM_STATIC
-/* What the page loads should be small: only the solver, which takes the time of frames, is compiled for speed. */
-#define GXFEM_SOLVE_IMPLEMENTATION
-#include "../../gxfem_solve.h"
+/* What the page loads should be small: what cuts is compiled for size alone. Steps with contact take the time of
+ * frames.
+ */
+#ifdef __wasm__
+#define EXPORT(name) __attribute__((export_name(#name), used))
 #pragma clang attribute push(__attribute__((minsize)), apply_to = function)
+#else
+#define EXPORT(name) /* bench/web.c has it as a part of a native program */
+#endif
+#define GXFEM_BOOLEAN_IMPLEMENTATION
+#define GXFEM_INTEGRATE_IMPLEMENTATION
+#include "../../gxfem_boolean.h"
+#include "../../gxfem_integrate.h"
+#ifdef __wasm__
+#pragma clang attribute pop
+#endif
 #define GXFEM_IMPLEMENTATION
 #include "../../gxfem.h"
-#pragma clang attribute pop
-
 #include "../gxshape.h"
-
-#define EXPORT(name) __attribute__((export_name(#name), used))
 
 enum { NUMBERS = 16, MARKS = 12, MODEL = 4, SHAPE_FAILED = 1000 };
 
