@@ -248,7 +248,7 @@ async function checkMemory(page) {
 }
 
 mkdirSync(directory, {recursive: true});
-const loaded = ["index.html", "page.js", "worker.js", "player.js", "jelly-simd.wasm"]
+const loaded = ["index.html", "player.css", "player.js", "page.js", "worker.js", "jelly-simd.wasm"]
     .reduce((sum, name) => sum + brotliCompressSync(readFileSync(join(folder, name))).length, 0);
 check("what the page loads has at most 250,000 bytes by brotli", loaded <= 250000, loaded);
 console.log(`the page loads ${loaded} bytes, by brotli`);

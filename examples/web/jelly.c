@@ -310,7 +310,7 @@ EXPORT(jelly_mark_count) uint32_t jelly_mark_count(void) { return (uint32_t)mark
 
 /* Moves the edge to the two points in numbers[0] .. [5]; lift 1: ends the stroke. numbers[6]: 1 if something was cut */
 EXPORT(jelly_stroke) int jelly_stroke(int lift) {
-    gx_blade_report report;
+    gx_blade_report report = {0};
     gx_result result = gx_blade_move(blade, numbers, 2, NULL, 0, &report, NULL);
     int cut = result == GX_OK && report.triangle_count > 0;
     if (lift) {
