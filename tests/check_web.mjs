@@ -180,12 +180,14 @@ async function checkView(page) {
 }
 
 async function checkTouch(page) {
+    await page.key(" ", " ");
     await page.key("n", "n");
-    await until(page, "page.numbers.fragments === 1");
+    await until(page, "page.numbers.steps === 0");
     await page.touch("touchStart", [[120, 360]]);
     for (let i = 1; i <= 12; i++) await page.touch("touchMove", [[120 + 60 * i, 360]]);
     await page.touch("touchEnd", []);
     check("a finger slices", await until(page, "page.numbers.fragments === 2"), await numbers(page));
+    await page.key(" ", " ");
 }
 
 async function checkShapes(page) {

@@ -187,10 +187,21 @@ static void settle_positions(double *positions_of, size_t count, double height, 
     }
 }
 
+/* Turns positions about the x axis, by quarters: y becomes z. */
+static void turn(double *x, size_t count, int quarters) {
+    size_t i;
+    for (; quarters > 0; quarters--)
+        for (i = 0; i < 3 * count; i += 3) {
+            const double y = x[i + 1];
+            x[i + 1] = -x[i + 2];
+            x[i + 2] = y;
+        }
+}
+
 /* kind 0: a cube of jelly that hangs; 1: a slab of one element's thickness that hangs; 2: an octopus, held by its head;
    3: a bunny, which stands on the ground. *held: what holds it */
 static int make_shape(gxshape_mesh *mesh, int kind, gx_region *held) {
-    static const size_t cube[3] = {12, 12, 12}, slab[3] = {20, 1, 20};
+    static const size_t cube[3] = {12, 12, 12}, slab[3] = {12, 1, 12};
     static const double low[3] = {-0.5, -0.5, 0.6}, side[3] = {-0.5, -0.05, 0.6};
     static const char *const names[] = {"octopus", "bunny"};
     gxshape_field field;
@@ -198,11 +209,12 @@ static int make_shape(gxshape_mesh *mesh, int kind, gx_region *held) {
     const gxshape_named *named;
     *held = gx_region_half_space(2, 1, 1.6 - 1e-6);
     if (kind == 0) return make_block(mesh, cube, low, 1.0 / 12);
-    if (kind == 1) return make_block(mesh, slab, side, 1.0 / 20);
+    if (kind == 1) return make_block(mesh, slab, side, 1.0 / 12);
     named = gxshape_find(names[kind - 2], strlen(names[kind - 2]));
     memset(&field, 0, sizeof field);
     named->make(&field);
-    if (gxshape_fill(&field, 0.8 * named->coarsest, mesh) != NULL) return SHAPE_FAILED;
+    if (gxshape_fill(&field, (kind == 2 ? 0.8 : 0.65) * named->coarsest, mesh) != NULL) return SHAPE_FAILED;
+    turn(mesh->positions, mesh->node_count, kind == 2 ? 2 : 1); /* heads up: it was along -z, and along y */
     settle_positions(mesh->positions, mesh->node_count, kind == 2 ? 0.5 : 0, middle);
     *held = kind == 2 ? gx_region_sphere(middle, 0.15) : gx_region_half_space(2, -1, 0.08);
     return GX_OK;
