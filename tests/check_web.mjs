@@ -98,9 +98,12 @@ async function checkSlices(page) {
     await frames(page, 15);
     check("the lower one falls", await regions(page) === 2, await regions(page));
     await look(page, "across");
+    await page.key(" ", " "); // what swings across a blade that is slow is cut into more pieces
     await stroke(page, [480, 100], [485, 620]);
     check("a stroke down gives four", await until(page, "page.numbers.fragments === 4"), await numbers(page));
+    await page.key(" ", " ");
     await frames(page, 5);
+    check("which are seen", await regions(page) === 4, await regions(page));
     await look(page, "four");
     await page.evaluate("document.getElementById('undo').click()");
     check("undo brings two back", await until(page, "page.numbers.fragments === 2"), await numbers(page));
