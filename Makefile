@@ -64,7 +64,7 @@ help:
 	@echo "make charts      docs/charts/, docs/BENCH.md, tables in README.md from what benches have measured; runs those"
 	@echo "                 that have not; installs gnuplot"
 	@echo "make page-blade  their chart and sections of blades alone, from make bench-blade bench-strokes"
-	@echo "make page-shapes  that of shapes, from make bench-shapes"
+	@echo "make page-shapes  that of shapes, from make bench-shapes; make page-web: the section of browsers, from make bench-web"
 	@echo "make bench-NAME  one bench: CSV on stdout and in $(BUILD)/bench/, a table on stderr"
 	@echo "  quadrature     integrals over parts of cut elements beside RXFEM, adaptive and regular sampling"
 	@echo "  stepping       error of the motion against time, over all settings; other methods"
@@ -87,6 +87,7 @@ help:
 	@echo "  contact        pieces that press on each other: against closed forms; what a step with contact costs"
 	@echo "  soak           100,000 steps of bodies that are cut, kicked and dropped: does a copy run away?"
 	@echo "  frames         frames with a cut beside frames without one"
+	@echo "  web            the page's jelly as WebAssembly, in node and in Chromium, beside native builds"
 	@echo "  skin           the visual surface: moved in each frame, updated after a cut"
 	@echo "  blade          blades in space through bodies that move: pieces, distance to known sheets, cost"
 	@echo "  strokes        thousands of strokes that take material: memory and time beside a body cut at once"
@@ -159,16 +160,21 @@ $(BUILD)/web/player.css $(BUILD)/web/player.js: $(BUILD)/web/%: examples/%
 	@mkdir -p $(@D)
 	@cp $< $@
 
-# From clang 16 on vectors are right (gxfem_boolean.h): a step then takes half the time.
+# From clang 16 on vectors are right (gxfem_boolean.h): a step then takes two thirds of the time. Sizes and times are those of
+# instructions that all browsers have had since 2021, and of an instruction in place of a call for a square root.
 newest_clang = $(shell for c in clang-21 clang-20 clang-19 clang-18 clang-17 clang-16 clang; do command -v $$c >/dev/null && echo $$c && break; done)
-web_clang = $(or $(CLANG),$(newest_clang)) --target=wasm32-wasi --sysroot=$(or $(SYSROOT),/usr) -std=c99 -Os $(WARNINGS) -I. -mexec-model=reactor
-web_link = -Wl,-z,stack-size=65536 -Wl,--stack-first -Wl,--strip-all -lm
+web_target = $(or $(CLANG),$(newest_clang)) --target=wasm32-wasi --sysroot=$(or $(SYSROOT),/usr)
+web_clang = $(web_target) -std=c99 -Os $(WARNINGS) -I. \
+    -fno-math-errno -mbulk-memory -mnontrapping-fptoint -msign-ext
+web_link = -mexec-model=reactor -Wl,-z,stack-size=65536 -Wl,--stack-first -Wl,--strip-all -lm
+# Linked by a command of its own: with -Os there, clang would run Binaryen's wasm-opt where it is installed, which makes steps slower.
 $(BUILD)/web/jelly.wasm: web_vectors =
 $(BUILD)/web/jelly-simd.wasm: web_vectors = -msimd128
 $(BUILD)/web/jelly.wasm $(BUILD)/web/jelly-simd.wasm: examples/web/jelly.c examples/gxshape.h $(headers)
 	@sh tests/install.sh web || sh tests/install.sh wasm
 	@mkdir -p $(@D)
-	$(web_clang) $(web_vectors) $< -o $@ $(web_link)
+	$(web_clang) $(web_vectors) -c $< -o $(@:.wasm=.o)
+	$(web_target) $(@:.wasm=.o) -o $@ $(web_link) && rm -f $(@:.wasm=.o)
 
 check-web: web
 	@if sh tests/install.sh page; then node tests/check_web.mjs $(BUILD)/web $(BUILD)/check-web; else echo "left out: no chromium"; fi
@@ -378,7 +384,7 @@ check-wasm:
 
 # ---- benches. Only their CSV goes to stdout. BENCH=--small: smaller ones, with a folder of their own for tables and charts
 
-benches = quadrature stepping front space thin shapes table2 conditioning failure scaling kernel open smallest solver violent accuracy drift frames skin blade strokes contact soak
+benches = quadrature stepping front space thin shapes table2 conditioning failure scaling kernel open smallest solver violent accuracy drift frames skin web blade strokes contact soak
 small = $(filter --small,$(BENCH))
 tables = $(BUILD)/bench$(if $(small),/small)
 # The compiler's own default: with -std=c99 gcc fuses no multiplications with additions, whatever -march says.
@@ -402,7 +408,7 @@ $(BUILD)/bench/solver: bench/solver.c $(wildcard bench/*.h) $(headers)
 	    $(shell pkg-config --libs CHOLMOD 2>/dev/null || echo -lcholmod) -lm
 
 # Frames are measured as users build: their table stands in the README.
-$(BUILD)/bench/frames $(BUILD)/bench/blade $(BUILD)/bench/strokes: BENCH_CFLAGS = -O2
+$(BUILD)/bench/frames $(BUILD)/bench/web $(BUILD)/bench/blade $(BUILD)/bench/strokes: BENCH_CFLAGS = -O2
 
 bench-solver:
 	@sh tests/install.sh bench >&2
@@ -424,10 +430,30 @@ $(BUILD)/bench/gxboolean: examples/gxboolean.c $(headers) $(wildcard examples/*.
 	@mkdir -p $(@D)
 	@$(CC) $(bench_standard) $(WARNINGS) $(BENCH_CFLAGS) -DGXFEM_STATIC -I. $< -o $@ $(LDFLAGS) -lm
 
+# The page's modules beside native programs of its jelly: by CC and, where they are, by clang and with musl, the C library of the modules.
+$(BUILD)/bench/web: examples/web/jelly.c examples/gxshape.h
+web_clang_native = $(and $(newest_clang),$(BUILD)/bench/web_clang)
+web_musl_native = $(and $(shell command -v musl-gcc),$(BUILD)/bench/web_musl)
+$(BUILD)/bench/web_clang: CC = $(newest_clang)
+$(BUILD)/bench/web_musl: CC = musl-gcc -static
+$(BUILD)/bench/web_clang $(BUILD)/bench/web_musl: bench/web.c examples/web/jelly.c examples/gxshape.h $(wildcard bench/*.h) $(headers)
+	@mkdir -p $(@D)
+	@$(CC) $(bench_standard) $(WARNINGS) -O2 $< -o $@ $(LDFLAGS) -lm
+
+bench-web:
+	@sh tests/install.sh page musl >&2 || true
+	@$(MAKE) --no-print-directory run-bench-web
+
+run-bench-web: $(BUILD)/bench/web $(web_clang_native) $(web_musl_native)
+	@$(MAKE) --no-print-directory web >&2
+	@mkdir -p $(tables)
+	@node bench/web.mjs $(tables)/web.csv $(BUILD)/web "$(shell $(CC) --version | grep -qi clang && echo clang || echo gcc) -O2=$<" \
+	    $(web_clang_native:%="$(newest_clang) -O2=%") $(web_musl_native:%="gcc -O2 musl=%") $(BENCH)
+
 bench-smallest:
 	@CC="$(CC)" sh bench/smallest.sh $(tables)
 
-plain_benches = $(filter-out bench-solver bench-kernel bench-open bench-smallest bench-table2 bench-stepping,$(benches:%=bench-%))
+plain_benches = $(filter-out bench-solver bench-kernel bench-open bench-smallest bench-web bench-table2 bench-stepping,$(benches:%=bench-%))
 $(plain_benches): bench-%: $(BUILD)/bench/%
 	@mkdir -p $(tables)
 	@$< $(tables)/$*.csv $(BENCH) $(if $(filter scaling,$*),$(MESH)) $(if $(filter shapes,$*),$(MODELS))
@@ -472,6 +498,10 @@ charts:
 	sh bench/page.sh $(tables) $(if $(small),$(tables),docs)/BENCH.md $(if $(small),$(tables)/)README.md || echo charts >>$(tables)/failed
 	@[ ! -e $(tables)/failed ] || { echo "failed: $$(tr '\n' ' ' <$(tables)/failed)" >&2; exit 1; }
 
+# The section of browsers alone, from a table that is there
+page-web:
+	@sh bench/page.sh $(tables) docs/BENCH.md web
+
 # The chart and the sections of blades or of shapes alone, from tables that are there
 page-blade page-shapes: page-%:
 	@sh tests/install.sh charts >&2
@@ -494,4 +524,4 @@ check-all: check
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: help web check-web lib bindings check-bindings examples demo check-page scenes pictures animation bench-programs check check-programs run-gxcut run-gxboolean run-corpus $(sort $(programs:%=run-%) $(tests:%=run-%)) FORCE sanitize sanitize-scenes check-settled compile amalgam check-amalgam install check-package coverage formatted lint format fuzz fuzz-blade flags hashes platforms check-wasm $(benches:%=bench-%) bench charts page-blade page-shapes check-all clean
+.PHONY: help web check-web lib bindings check-bindings examples demo check-page scenes pictures animation bench-programs check check-programs run-gxcut run-gxboolean run-corpus $(sort $(programs:%=run-%) $(tests:%=run-%)) FORCE sanitize sanitize-scenes check-settled compile amalgam check-amalgam install check-package coverage formatted lint format fuzz fuzz-blade flags hashes platforms check-wasm $(benches:%=bench-%) run-bench-web bench charts page-blade page-shapes page-web check-all clean

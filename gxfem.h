@@ -10375,7 +10375,25 @@ static int gxp_is_near(double x) {
     return ((b >> 52) & 0x7ff) < 1023 + 128;
 }
 
-static inline double gxp_more(double a, double b) { return a > b ? a : b; }
+/* first ? a : b. Engines of WebAssembly make a branch of a choice of doubles, which they often mispredict, and an
+   instruction of one of integers. The compiler must not see that the two are one. */
+static inline double gxp_choose(int first, double a, double b) {
+#if defined(__wasm__) && defined(__clang__)
+    uint64_t x, y;
+    memcpy(&x, &a, sizeof x);
+    memcpy(&y, &b, sizeof y);
+    __asm__("" : "+r"(x), "+r"(y));
+    x = first ? x : y;
+    __asm__("" : "+r"(x));
+    memcpy(&a, &x, sizeof a);
+    return a;
+#else
+    return first ? a : b;
+#endif
+}
+
+static inline double gxp_more(double a, double b) { return gxp_choose(a > b, a, b); }
+static inline double gxp_less(double a, double b) { return gxp_choose(a < b, a, b); }
 
 static void gxp_empty_bounds(gxp_bounds *box) {
     int k;
@@ -10388,8 +10406,8 @@ static void gxp_empty_bounds(gxp_bounds *box) {
 static void gxp_add_bounds(gxp_bounds *box, const gxp_bounds *other) {
     int k;
     for (k = 0; k < 3; k++) {
-        box->low[k] = other->low[k] < box->low[k] ? other->low[k] : box->low[k];
-        box->high[k] = other->high[k] > box->high[k] ? other->high[k] : box->high[k];
+        box->low[k] = gxp_less(other->low[k], box->low[k]);
+        box->high[k] = gxp_more(other->high[k], box->high[k]);
     }
 }
 
@@ -12713,8 +12731,12 @@ static int gxp_has_changed(const gxp_touch *t, uint32_t id) {
 #define GXP_TOUCH_SAME   0.25
 #define GXP_TOUCH_BEHIND 1e-9
 
-/* Of two numbers the greater one, as one instruction */
+/* Of two numbers the greater one, as one instruction; in loops that become vectors (gxp_choose does not) */
+#if defined(__wasm__) && (!defined(__wasm_simd128__) || defined(GXFEM_SCALAR))
+#define GXP_MOST(a, b) gxp_more(a, b)
+#else
 #define GXP_MOST(a, b) ((a) > (b) ? (a) : (b))
+#endif
 
 /* What the affine rate of a copy adds to the velocity of a material point along an axis; 0 where it has none */
 static double gxp_affine_speed(const gx_body *body, uint32_t copy, const double rest[3], int axis) {
@@ -12881,8 +12903,8 @@ enum { GXP_TOUCH_MANY = 128, GXP_TOUCH_FEW = 32 };
 static void gxp_add_to_bounds(const double *x, gxp_bounds *box) {
     int k;
     for (k = 0; k < 3; k++) {
-        box->low[k] = x[k] < box->low[k] ? x[k] : box->low[k];
-        box->high[k] = x[k] > box->high[k] ? x[k] : box->high[k];
+        box->low[k] = gxp_less(x[k], box->low[k]);
+        box->high[k] = gxp_more(x[k], box->high[k]);
     }
 }
 
@@ -12972,10 +12994,10 @@ static void gxp_fit_facets(gx_body *body, const gxp_touch_surface *s, double dt)
 /* The least and the most of products of numbers from two ranges */
 static void gxp_range_product(double a, double b, double c, double d, double *low, double *high) {
     const double ac = a * c, ad = a * d, bc = b * c, bd = b * d;
-    const double least = ac < ad ? ac : ad, most = ac < ad ? ad : ac, one = bc < bd ? bc : bd,
-                 other = bc < bd ? bd : bc;
-    *low = least < one ? least : one;
-    *high = most < other ? other : most;
+    const double least = gxp_less(ac, ad), most = gxp_choose(ac < ad, ad, ac), one = gxp_less(bc, bd),
+                 other = gxp_choose(bc < bd, bd, bc);
+    *low = gxp_less(least, one);
+    *high = gxp_choose(most < other, other, most);
 }
 
 /* The squared distance of a box from samples within the step; GXP_TREE_BEYOND if it is above limit or if none of them
@@ -12989,10 +13011,9 @@ static double gxp_box_gap(const gxp_touch_box *box, const gxp_touch_crowd *crowd
         const double left = box->from.low[k] - own->from.high[k], right = box->from.high[k] - own->from.low[k];
         const double left_end = box->to.low[k] - own->to.high[k], right_end = box->to.high[k] - own->to.low[k];
         double gap;
-        low[k] = left < left_end ? left : left_end;
-        high[k] = right > right_end ? right : right_end;
-        gap = GXP_MOST(low[k], -high[k]);
-        gap = GXP_MOST(gap, 0.0);
+        low[k] = gxp_less(left, left_end);
+        high[k] = gxp_more(right, right_end);
+        gap = gxp_more(gxp_more(low[k], -high[k]), 0.0);
         square += gap * gap;
     }
     if (square > limit) return GXP_TREE_BEYOND;

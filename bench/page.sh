@@ -2,7 +2,7 @@
 # Writes what benches have measured as a page with tables and charts, and two parts of the README.
 # usage: sh bench/page.sh TABLES PAGE README
 #        sh bench/page.sh TABLES PAGE blade     writes the sections of blades anew, or makes them; needs their tables alone
-#        sh bench/page.sh TABLES PAGE shapes    the same of shapes
+#        sh bench/page.sh TABLES PAGE shapes    the same of shapes; web: of browsers
 #     TABLES  directory of the benches' CSV files; a missing one is an error
 #     PAGE    the page; charts are in charts/ beside it
 #     README  what stands between its lines `<!-- NAME -->` and `<!-- end of NAME -->` is written anew: why, speed
@@ -11,14 +11,17 @@ tables=$1
 page=$2
 readme=$3
 
-wanted="quadrature stepping front conditioning failure table2 table2_ratios scaling kernel open smallest solver product violent accuracy drift frames skin blade strokes thin shapes"
-[ "$readme" != blade ] || wanted="blade strokes"
-[ "$readme" != shapes ] || wanted=shapes
+wanted="quadrature stepping front conditioning failure table2 table2_ratios scaling kernel open smallest solver product violent accuracy drift frames skin web blade strokes thin shapes"
+parts=blade,shapes,web # that are written alone
+case $readme in
+blade) wanted="blade strokes" ;;
+shapes|web) wanted=$readme ;;
+esac
 for bench in $wanted; do
     [ -s "$tables/$bench.csv" ] || { echo "$0: $tables/$bench.csv is missing: make bench-$(echo $bench | sed 's/_ratios//; s/product/solver/')" >&2; exit 2; }
 done
 for name in why speed; do
-    [ "$readme" != blade ] && [ "$readme" != shapes ] || break
+    case ,$parts, in *",$readme,"*) break ;; esac
     for line in "<!-- $name -->" "<!-- end of $name -->"; do
         [ "$(grep -cx -- "$line" "$readme")" = 1 ] || { echo "$0: $readme: no line \`$line\`, or several" >&2; exit 2; }
     done
@@ -517,26 +520,37 @@ tools; a carving refines its tools, so that no body is like it. us: for each ele
     echo
 }
 
-# Only these sections: the page is written to a file beside it first
-if [ "$readme" = blade ]; then
-    {
-        awk '/^## (Blades in moving bodies|Booleans of closed surfaces)$/ { exit } { print }' "$page"
-        blade_sections
-        awk '/^## Booleans of closed surfaces$/ { on = 1 } on { print }' "$page"
-    } >"$page.new" && mv "$page.new" "$page" || exit 2
-    echo "wrote sections of blades of $page"
-    exit 0
-fi
+# The page's jelly in browsers
+web_section() {
+    echo "## In browsers"
+    echo
+    text "The jelly of the page on which one slices (\`examples/web\`): a cube of 10,368 elements that hangs by its top, with contact. \
+Three strokes make eight pieces of it; the lower four fall onto the ground and onto each other. Measured: 240 steps of 1/60 s from then on, \
+a mean, in one thread each; the skin is what is drawn of it. Frames: of a step and the skin; drawing has a thread of its own. Modules as \`make web\` builds \
+them, native programs by \`-O2\`. Topology, bits: sums over the skin's triangles and over all positions at the end. With the C library \
+of the modules, musl, a native program ends in their bits. The functions of another one differ in last places, and a blade in space finds the \
+moving body elsewhere by as much."
+    echo
+    table web "| program | vectors | step, ms | the slowest | skin, ms | to the first | frames a second | pieces | vertices | topology | bits |"
+    echo
+}
 
-if [ "$readme" = shapes ]; then
+# only FIRST NEXT COMMAND: writes anew what stands from heading FIRST up to heading NEXT, or puts it there
+only() {
     {
-        awk '/^### (Shapes carved out of a grid|Beside local solvers)$/ { exit } { print }' "$page"
-        shapes_section
-        awk '/^### Beside local solvers$/ { on = 1 } on { print }' "$page"
+        awk -v first="$1" -v up_to="$2" '$0 == first || $0 == up_to { exit } { print }' "$page"
+        $3
+        awk -v up_to="$2" '$0 == up_to { on = 1 } on { print }' "$page"
     } >"$page.new" && mv "$page.new" "$page" || exit 2
-    echo "wrote the section of shapes of $page"
+    echo "wrote $page from \"$1\" up to \"$2\""
     exit 0
-fi
+}
+
+case $readme in
+blade) only "## Blades in moving bodies" "## Booleans of closed surfaces" blade_sections ;;
+shapes) only "### Shapes carved out of a grid" "### Beside local solvers" shapes_section ;;
+web) only "## In browsers" "## Blades in moving bodies" web_section ;;
+esac
 
 {
     echo "# Accuracy against speed, and where methods fail"
@@ -686,6 +700,7 @@ solver's model and multigrid where it has touched them, $(range frames 8 1) time
     echo
     skin
     echo
+    web_section
     blade_sections
     echo "## Booleans of closed surfaces"
     echo
@@ -732,7 +747,7 @@ judges."
     echo
     echo "| file in \`bench/\` | what it is |"
     echo "| --- | --- |"
-    echo "| \`quadrature.c\`, \`stepping.c\`, \`space.c\`, \`thin.c\`, \`shapes.c\`, \`front.c\`, \`table2.c\`, \`conditioning.c\`, \`failure.c\`, \`scaling.c\`, \`solver.c\`, \`violent.c\`, \`kernel.c\`, \`open.c\`, \`smallest.sh\`, \`accuracy.c\`, \`drift.c\`, \`frames.c\`, \`skin.c\`, \`blade.c\`, \`strokes.c\` | the sections above, in this order but for Booleans |"
+    echo "| \`quadrature.c\`, \`stepping.c\`, \`space.c\`, \`thin.c\`, \`shapes.c\`, \`front.c\`, \`table2.c\`, \`conditioning.c\`, \`failure.c\`, \`scaling.c\`, \`solver.c\`, \`violent.c\`, \`kernel.c\`, \`open.c\`, \`smallest.sh\`, \`accuracy.c\`, \`drift.c\`, \`frames.c\`, \`skin.c\`, \`web.c\` with \`web.mjs\`, \`blade.c\`, \`strokes.c\` | the sections above, in this order but for Booleans |"
     echo "| \`contact.c\` | pieces that press on each other: against closed forms; what a step with contact costs |"
     echo "| \`soak.c\` | 100,000 steps of bodies that are cut, kicked and dropped: no copy may run away |"
     echo "| \`rxfem.h\`, \`rxfem_rules.h\`, \`rxfem_model.h\` | RXFEM (Koschier, Bender, Thuerey 2017), written for the bench |"

@@ -8,6 +8,7 @@
 #     open    CGAL and npm, for other kernels in the benches
 #     wasm    clang with its parts for WebAssembly, and node, which runs it
 #     web     the same of clang 16 or later, for the page
+#     musl    a C compiler with musl, for the bench of the page
 #     platforms  cross compilers for Windows, ARM and S/390, and emulators that run their programs
 #     format  clang-format 14
 #     page    Chromium and node, for the page that the demo makes
@@ -69,6 +70,7 @@ have() {
     open) has node npm && printf '#include <CGAL/version.h>\n' | "${CXX:-c++}" -x c++ -E - >/dev/null 2>&1 ;;
     wasm) has node && links_wasm ;;
     web) has node && links_web ;;
+    musl) has musl-gcc ;;
     platforms) has x86_64-w64-mingw32-gcc i686-w64-mingw32-gcc wine aarch64-linux-gnu-gcc arm-linux-gnueabihf-gcc s390x-linux-gnu-gcc \
         qemu-aarch64-static qemu-arm-static qemu-s390x-static ;;
     format) has clang-format ;;
@@ -102,6 +104,9 @@ packages() {
     open:brew) echo cgal node ;;
     charts:*) echo gnuplot ;;
     wasm:apt-get) wasm_packages ;;
+    musl:apt-get) echo musl-tools ;;
+    musl:dnf) echo musl-gcc ;;
+    musl:*) echo musl ;;
     web:apt-get) echo nodejs clang-16 lld-16 wasi-libc libclang-rt-16-dev-wasm32 ;;
     platforms:apt-get) echo gcc-mingw-w64 wine wine64 qemu-user-static gcc-aarch64-linux-gnu gcc-arm-linux-gnueabihf gcc-s390x-linux-gnu ;;
     format:apt-get|format:brew) echo clang-format ;;

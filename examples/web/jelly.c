@@ -10,17 +10,25 @@
      >>cutting    strokes, going back
      >>moving     a hand that pulls, steps */
 #define GXFEM_STATIC
-/* What the page loads should be small: only the solver, which takes the time of frames, is compiled for speed. */
-#define GXFEM_SOLVE_IMPLEMENTATION
-#include "../../gxfem_solve.h"
+/* What the page loads should be small: what cuts is compiled for size alone. Steps with contact take the time of
+ * frames.
+ */
+#ifdef __wasm__
+#define EXPORT(name) __attribute__((export_name(#name), used))
 #pragma clang attribute push(__attribute__((minsize)), apply_to = function)
+#else
+#define EXPORT(name) /* bench/web.c has it as a part of a native program */
+#endif
+#define GXFEM_BOOLEAN_IMPLEMENTATION
+#define GXFEM_INTEGRATE_IMPLEMENTATION
+#include "../../gxfem_boolean.h"
+#include "../../gxfem_integrate.h"
+#ifdef __wasm__
+#pragma clang attribute pop
+#endif
 #define GXFEM_IMPLEMENTATION
 #include "../../gxfem.h"
-#pragma clang attribute pop
-
 #include "../gxshape.h"
-
-#define EXPORT(name) __attribute__((export_name(#name), used))
 
 enum { NUMBERS = 16, MARKS = 12, MODEL = 4, SHAPE_FAILED = 1000 };
 
@@ -179,10 +187,21 @@ static void settle_positions(double *positions_of, size_t count, double height, 
     }
 }
 
+/* Turns positions about the x axis, by quarters: y becomes z. */
+static void turn(double *x, size_t count, int quarters) {
+    size_t i;
+    for (; quarters > 0; quarters--)
+        for (i = 0; i < 3 * count; i += 3) {
+            const double y = x[i + 1];
+            x[i + 1] = -x[i + 2];
+            x[i + 2] = y;
+        }
+}
+
 /* kind 0: a cube of jelly that hangs; 1: a slab of one element's thickness that hangs; 2: an octopus, held by its head;
    3: a bunny, which stands on the ground. *held: what holds it */
 static int make_shape(gxshape_mesh *mesh, int kind, gx_region *held) {
-    static const size_t cube[3] = {12, 12, 12}, slab[3] = {20, 1, 20};
+    static const size_t cube[3] = {12, 12, 12}, slab[3] = {12, 1, 12};
     static const double low[3] = {-0.5, -0.5, 0.6}, side[3] = {-0.5, -0.05, 0.6};
     static const char *const names[] = {"octopus", "bunny"};
     gxshape_field field;
@@ -190,11 +209,12 @@ static int make_shape(gxshape_mesh *mesh, int kind, gx_region *held) {
     const gxshape_named *named;
     *held = gx_region_half_space(2, 1, 1.6 - 1e-6);
     if (kind == 0) return make_block(mesh, cube, low, 1.0 / 12);
-    if (kind == 1) return make_block(mesh, slab, side, 1.0 / 20);
+    if (kind == 1) return make_block(mesh, slab, side, 1.0 / 12);
     named = gxshape_find(names[kind - 2], strlen(names[kind - 2]));
     memset(&field, 0, sizeof field);
     named->make(&field);
-    if (gxshape_fill(&field, 0.8 * named->coarsest, mesh) != NULL) return SHAPE_FAILED;
+    if (gxshape_fill(&field, (kind == 2 ? 0.8 : 0.65) * named->coarsest, mesh) != NULL) return SHAPE_FAILED;
+    turn(mesh->positions, mesh->node_count, kind == 2 ? 2 : 1); /* heads up: it was along -z, and along y */
     settle_positions(mesh->positions, mesh->node_count, kind == 2 ? 0.5 : 0, middle);
     *held = kind == 2 ? gx_region_sphere(middle, 0.15) : gx_region_half_space(2, -1, 0.08);
     return GX_OK;
@@ -302,7 +322,7 @@ EXPORT(jelly_mark_count) uint32_t jelly_mark_count(void) { return (uint32_t)mark
 
 /* Moves the edge to the two points in numbers[0] .. [5]; lift 1: ends the stroke. numbers[6]: 1 if something was cut */
 EXPORT(jelly_stroke) int jelly_stroke(int lift) {
-    gx_blade_report report;
+    gx_blade_report report = {0};
     gx_result result = gx_blade_move(blade, numbers, 2, NULL, 0, &report, NULL);
     int cut = result == GX_OK && report.triangle_count > 0;
     if (lift) {

@@ -216,7 +216,8 @@ function begin(kind) {
         list.options[kind].text = page.model;
         list.value = kind;
     }
-    page.viewer.camera.fit([-0.9, -0.9, 0], [0.9, 0.9, 1.7]);
+    if (kind < 2) page.viewer.camera.fit([-0.9, -0.9, 0], [0.9, 0.9, 1.7]);
+    else page.viewer.camera.fit([-0.7, -0.7, 0], [0.7, 0.7, 1.4]); /* shapes and models: jelly.c scales them */
 }
 
 let drawing = false;

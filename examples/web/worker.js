@@ -38,12 +38,12 @@ function good(result) {
     return result === 0;
 }
 
-/* The vertices and triangles of an OBJ file; polygons become fans. */
+/* The vertices and triangles of an OBJ file, whose y is up; polygons become fans. */
 function readObj(lines) {
     const vertices = [], triangles = [];
     for (const line of lines.split("\n")) {
         const word = line.trim().split(/\s+/);
-        if (word[0] === "v") vertices.push(...word.slice(1, 4).map(Number));
+        if (word[0] === "v") vertices.push(Number(word[1]), -Number(word[3]), Number(word[2]));
         if (word[0] !== "f") continue;
         const corner = word.slice(1).map(text => parseInt(text, 10)).map(i => i < 0 ? vertices.length / 3 + i : i - 1);
         for (let k = 2; k < corner.length; k++) triangles.push(corner[0], corner[k - 1], corner[k]);
@@ -51,7 +51,7 @@ function readObj(lines) {
     return {vertices, triangles};
 }
 
-/* The corners of an STL file's triangles; those with equal coordinates become one vertex. */
+/* The corners of an STL file's triangles, z up; those with equal coordinates become one vertex. */
 function readStl(bytes) {
     const view = new DataView(bytes), count = bytes.byteLength >= 84 ? view.getUint32(80, true) : 0, corners = [];
     if (bytes.byteLength === 84 + 50 * count) {
