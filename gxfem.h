@@ -251,7 +251,8 @@ typedef struct gx_body_desc {
     const uint32_t *element_materials; /* element_count, below material_count; NULL: all of materials[0] */
     const float *texture;              /* node_count x 2: texture coordinates of the outer surface; NULL: all 0 */
     /* A share of an element, below 1. A copy follows others if all parts of elements around it are smaller (see
-       gx_body_step). 0: 1e-3. 1e-300: none follow, and slivers may be flung away. */
+       gx_body_step). 0: 1e-3, and for affine copies 6e-2 of the largest part near them. 1e-300: none follow, and
+       slivers may be flung away. */
     double support_below;
     /* In thicknesses of elements, 0 ... 1000. Where material is thinner, its copies carry an affine motion each (are
        affine), so that sheets bend as they should. Creation and cuts find it, the latter among what they touch; an
@@ -962,6 +963,10 @@ extern "C" {
 #define GXP_SUPPORT 1e-3
 #define GXP_SPECK   1e-9
 
+/* The same for affine copies: so many unknowns of one copy are held by a part only if it is no less than this share of
+   the largest part near it. */
+#define GXP_BEND_SUPPORT 6e-2
+
 /* Where support_below is 0, a fragment that reaches less far within every element moves as a point: its copies would
    move ten times as far as its material. */
 #define GXP_SPECK_REACH 0.1
@@ -981,9 +986,9 @@ typedef struct gxp_config {
     gx_jobs jobs;
     double (*clock)(void *user);
     void *clock_user;
-    double support_below;                          /* as given */
-    double follow_below, speck_below, speck_reach; /* see >>supports */
-    double affine_below;                           /* see >>sheets */
+    double support_below;                                      /* as given */
+    double follow_below, bend_below, speck_below, speck_reach; /* see >>supports */
+    double affine_below;                                       /* see >>sheets */
 } gxp_config;
 
 typedef struct gxp_box { /* tree node; count 0: children first, first+1 */
@@ -1230,7 +1235,7 @@ typedef struct gxp_model {
     uint64_t resumed;
     /* elements of which a cell or its copies have changed since the solver's model was made; some more than once */
     gxp_words changed;
-    gxp_words thin; /* elements with a part of a share below follow_below, ascending; of use unless state is STALE */
+    gxp_words thin; /* elements with a part of a small share (gxp_is_thin), ascending; of use unless state is STALE */
     /* there only while the solver is told; it copies them */
     gxs_element *parts;
     uint32_t part_count, part_capacity;
@@ -8925,7 +8930,10 @@ static gx_result gxp_attach(gx_body *body, const gx_step_desc *desc, gxs_step_de
    Touches the list of thin elements and the model's constraints.
    A part is the cells of an element that the same four copies move; its share is its volume over the element's. A copy
    is weak if every part around it has a share below follow_below: so little moves it that nothing else would keep it
-   from running away. It takes the increment of the field of a strong cell near it, that is, one without weak copies. A
+   from running away. An affine copy has four times as many unknowns, for which that is not enough beside larger parts:
+   a sharp edge ends in parts of all sizes. It is weak, too, if every part around it has less than bend_below of the
+   largest one near it, that is, around the copies of the cells around it. So all copies of a thin sheet stay free. A
+   weak copy takes the increment of the field of a strong cell near it, that is, one without weak copies. A
    fragment without a strong cell is thin everywhere. Its copies are then weak by comparison with its fullest part; if
    that part has a share below speck_below, or no cell reaches speck_reach, the fragment is a speck and moves as a
    point. All work is around thin elements, which are those with a part of so small a share. */
@@ -8953,11 +8961,12 @@ static double gxp_part_share(const gx_body *body, uint32_t cell) {
     return volume / gxp_element_volume(body, part->element);
 }
 
-/* Has the element a part with a share below follow_below? */
+/* Has the element a part with so small a share that it may make a copy weak? */
 static int gxp_is_thin(const gx_body *body, uint32_t element) {
+    const double least = fmax(body->config.follow_below, body->config.bend_below);
     uint32_t cell;
     for (cell = element; cell != GXP_NONE; cell = body->cells.data[cell].next)
-        if (body->cells.data[cell].kept && gxp_part_share(body, cell) < body->config.follow_below) return 1;
+        if (body->cells.data[cell].kept && gxp_part_share(body, cell) < least) return 1;
     return 0;
 }
 
@@ -8988,6 +8997,27 @@ static int gxp_is_weak(const gx_body *body, uint32_t copy, double share) {
     while (gxp_next_around(body, &around))
         if (gxp_part_share(body, around.cell) >= share) return 0;
     return 1;
+}
+
+/* The largest share of a part around the copies of the cells around the copy */
+static double gxp_share_near(const gx_body *body, uint32_t copy) {
+    gxp_around around = gxp_around_copy(body, copy);
+    double most = 0;
+    int k;
+    while (gxp_next_around(body, &around))
+        for (k = 0; k < 4; k++) {
+            gxp_around beside = gxp_around_copy(body, body->cells.data[around.cell].copies[k]);
+            while (gxp_next_around(body, &beside)) most = fmax(most, gxp_part_share(body, beside.cell));
+        }
+    return most;
+}
+
+/* Is the copy held by next to nothing, whatever the rest of its fragment is? */
+static int gxp_is_stray(const gx_body *body, uint32_t copy) {
+    const double bend_below = body->copies.bends && body->copies.affine[copy] ? body->config.bend_below : 0;
+    return gxp_is_weak(body, copy, body->config.follow_below) ||
+           (bend_below > 0 && gxp_is_weak(body, copy, bend_below) &&
+            gxp_is_weak(body, copy, bend_below * gxp_share_near(body, copy)));
 }
 
 static int gxp_is_strong(const gx_body *body, const gxp_supports *supports, uint32_t cell) {
@@ -9102,7 +9132,7 @@ static uint32_t gxp_find_supports(const gx_body *body, gxp_supports *supports) {
                 const uint32_t copy = body->cells.data[cell].copies[k];
                 if (supports->seen[copy] == supports->search) continue;
                 supports->seen[copy] = supports->search;
-                supports->weak[copy] = gxp_is_weak(body, copy, body->config.follow_below) ? GXP_FOLLOWS : GXP_FREE;
+                supports->weak[copy] = gxp_is_stray(body, copy) ? GXP_FOLLOWS : GXP_FREE;
             }
     for (i = 0; i < body->copies.count; i++) {
         while (supports->weak[i] && supports->cell[i] == GXP_NONE) {
@@ -18865,6 +18895,7 @@ static void gxp_set_config(gxp_config *config, const gx_body_desc *desc) {
     config->support_below = desc->support_below;
     config->affine_below = desc->affine_below;
     config->follow_below = desc->support_below > 0 ? desc->support_below : GXP_SUPPORT;
+    config->bend_below = desc->affine_below > 0 && !(desc->support_below > 0) ? GXP_BEND_SUPPORT : 0;
     config->speck_below = desc->support_below > 0 ? desc->support_below : GXP_SPECK;
     config->speck_reach = desc->support_below > 0 ? 0 : GXP_SPECK_REACH;
 }
@@ -20310,6 +20341,7 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_PREFETCHES
 #undef GXP_NONE
 #undef GXP_SUPPORT
+#undef GXP_BEND_SUPPORT
 #undef GXP_SPECK
 #undef GXP_SPECK_REACH
 #undef GXP_PLANE_GROUP

@@ -54,8 +54,9 @@ typedef struct scene_desc {
     const char *mesh, *small_mesh; /* as gxio_mesh_load takes them; small_mesh NULL: the same; mesh NULL: none */
     int any_mesh;                  /* not 0: --mesh may name another, --shape a closed surface */
     uint32_t frames, small_frames;
-    int has_csv;           /* not 0: --csv names a file for figures of the scene's own */
-    uint32_t least_frames; /* with fewer there is nothing to see; 0: any number will do */
+    uint32_t cells, small_cells; /* of the grid of a body of its own; above 0: --cells may ask for others */
+    int has_csv;                 /* not 0: --csv names a file for figures of the scene's own */
+    uint32_t least_frames;       /* with fewer there is nothing to see; 0: any number will do */
 } scene_desc;
 
 /* Seconds of a frame, or their sums */
@@ -73,8 +74,9 @@ enum {
 };
 
 typedef struct scene_memory {
-    size_t now, peak;
-} scene_memory; /* bytes */
+    size_t now, peak; /* bytes */
+    uint32_t left;    /* above 0: that many calls for memory are left, the last of which fails */
+} scene_memory;
 
 /* A surface of (along + 1) x (across + 1) points, cut column by column: neighbouring strips have the same vertices, bit
  * by bit. */
@@ -178,9 +180,11 @@ static inline void *scene_array(scene *s, size_t count, size_t size) {
 
 /* -------------------------------------------------------------------------------------------- >>memory */
 
+static inline int scene_is_out_of_memory(scene_memory *memory) { return memory->left > 0 && --memory->left == 0; }
+
 static inline void *scene_allocate(void *user, size_t size) {
     scene_memory *memory = (scene_memory *)user;
-    void *bytes = malloc(size);
+    void *bytes = scene_is_out_of_memory(memory) ? NULL : malloc(size);
     if (bytes) memory->now += size;
     if (memory->now > memory->peak) memory->peak = memory->now;
     return bytes;
@@ -193,7 +197,7 @@ static inline void scene_release(void *user, void *bytes, size_t size) {
 
 static inline void *scene_reallocate(void *user, void *bytes, size_t size, size_t larger) {
     scene_memory *memory = (scene_memory *)user;
-    void *moved = realloc(bytes, larger);
+    void *moved = scene_is_out_of_memory(memory) ? NULL : realloc(bytes, larger);
     if (moved) memory->now += larger - size;
     if (memory->now > memory->peak) memory->peak = memory->now;
     return moved;
@@ -201,17 +205,22 @@ static inline void *scene_reallocate(void *user, void *bytes, size_t size, size_
 
 /* ----------------------------------------------------------------------------------------- >>arguments */
 
+static inline uint32_t scene_default_cells(const scene *s) { return s->desc.cells ? s->desc.cells : 16; }
+
 static inline void scene_usage(const scene *s) {
     printf("usage: %s [options]\n\n%s\n\n", s->desc.name, s->desc.about);
     puts("  --small             a smaller scene, for tests");
     printf("  --frames N          steps and frames (%lu; %lu with --small)\n", (unsigned long)s->desc.frames,
            (unsigned long)s->desc.small_frames);
     if (s->desc.has_csv) puts("  --csv FILE          appends the scene's figures to it");
+    if (s->desc.cells)
+        printf("  --cells N           cubes of the grid along the body's longest side (%lu)\n",
+               (unsigned long)scene_default_cells(s));
     if (s->desc.any_mesh)
         printf("  --mesh MESH         a file or a generated mesh, as gxcut takes them (%s)\n"
                "  --shape CUT         in its place: the body is all inside of a closed surface, as gxcut takes them\n"
                "  --cells N           cubes of the grid along the shape's longest side (%lu)\n",
-               s->desc.mesh, (unsigned long)s->cells);
+               s->desc.mesh, (unsigned long)scene_default_cells(s));
     puts("  --out DIR           writes frames there\n"
          "  --every N           only each N-th of them (1)\n"
          "  --format vtu|obj|html\n"
@@ -262,7 +271,7 @@ static inline int scene_take_value(scene *s, const char *name, const char *value
         s->mesh_name = value;
     else if (strcmp(name, "--shape") == 0 && s->desc.any_mesh)
         s->shape_name = value;
-    else if (strcmp(name, "--cells") == 0 && s->desc.any_mesh)
+    else if (strcmp(name, "--cells") == 0 && (s->desc.any_mesh || s->desc.cells))
         scene_read_count(s, name, value, &s->cells);
     else
         return 0;
@@ -281,6 +290,7 @@ static inline void scene_take_arguments(scene *s, int argc, char **argv) {
     }
     if (!scene_is_format(s, "vtu") && !scene_is_format(s, "obj") && !scene_is_format(s, "html"))
         scene_misuse(s, "--format", "must be vtu, obj or html");
+    if (!s->cells) s->cells = s->small && s->desc.small_cells ? s->desc.small_cells : scene_default_cells(s);
     if (s->frames && s->frames < s->desc.least_frames) {
         gxio_fail(&s->error, "--frames", 0, "needs at least %lu", (unsigned long)s->desc.least_frames);
         scene_quit(s, SCENE_MISUSED);
@@ -310,7 +320,6 @@ static inline void scene_open(scene *s, const scene_desc *desc, int argc, char *
     s->desc = *desc;
     s->every = 1;
     s->format = "vtu";
-    s->cells = 16;
     scene_set_defaults(s);
     scene_take_arguments(s, argc, argv);
     if (s->help) {
