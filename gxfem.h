@@ -1665,7 +1665,7 @@ typedef struct gxp_touch {
     gxp_words ranked;        /* facets along a curve */
     gxp_words kept_leaves;   /* of these, those in reach of a sample */
     double *gaps;            /* m, of kept_leaves: how far they are from the sample at least */
-    double *passed;          /* 6 x near.count, rounded up: boxes of those leaves */
+    double *passed;          /* 12 x near.count, rounded up: boxes of those leaves, and where samples meet them */
     gxp_words crowd, near;   /* boxes that may hold what many samples meet; leaves that do what some of them meet */
     uint32_t leaf_count;     /* a power of two */
     uint32_t given;          /* pairs of the caller, which stand first */
@@ -12857,6 +12857,32 @@ static void gxp_try_facet(const gx_body *body, const gxp_touch_surface *s, doubl
    of the last step as the first bound. What is left out cannot be met, or is further than what is found: so a sample
    meets the same facet as by trying all. */
 
+/* Several of four numbers at a time: gcc does not make vectors of loops that compare. GXP_EACH_LANE begins a loop over
+   them; GXP_LANE: those at work, of four doubles; GXP_FLAGS: likewise, of four integers, what GXP_ABOVE, with | & ~,
+   has told: 0 if it is not so. Vectors longer than the machine's would be compared number by number. */
+#if !defined(GXFEM_SCALAR) && !defined(GXFEM_INTRINSICS) && (defined(__SSE2__) || defined(__aarch64__)) &&              \
+    (defined(__clang__) || defined(__GNUC__))
+#ifdef __AVX__
+#define GXP_LANES 4u
+#else
+#define GXP_LANES 2u
+#endif
+typedef __attribute__((vector_size(8 * GXP_LANES), aligned(8), may_alias)) double gxp_lane;
+typedef __attribute__((vector_size(8 * GXP_LANES), aligned(8), may_alias)) int64_t gxp_lane_flags;
+#define GXP_LANE(x)      (*(gxp_lane *)((x) + j))
+#define GXP_FLAGS(x)     (*(gxp_lane_flags *)((x) + j))
+#define GXP_ABOVE(a, b)  ((gxp_lane_flags)((a) > (b)))
+#define GXP_LANE_SIZE(a) ((gxp_lane)((gxp_lane_flags)(a)&INT64_MAX))
+#else
+#define GXP_LANES        1u
+typedef double gxp_lane;
+#define GXP_LANE(x)      ((x)[j])
+#define GXP_FLAGS(x)     ((x)[j])
+#define GXP_ABOVE(a, b)  ((int64_t)((a) > (b)))
+#define GXP_LANE_SIZE(a) fabs(a)
+#endif
+#define GXP_EACH_LANE(j) for (j = 0; j < 4; j += GXP_LANES)
+
 /* Samples that are sought together, at most: those that leave out boxes together first, then those that list leaves
    together. With half or twice of either a step takes up to 4 % longer. A cosine: how alike they face at rest */
 enum { GXP_TOUCH_MANY = 128, GXP_TOUCH_FEW = 32 };
@@ -13075,62 +13101,79 @@ static double gxp_pair_slack(const gxp_touch_surface *s, const gxp_touch_pair *b
 static size_t gxp_passed_stride(const gxp_touch *t) { return ((size_t)t->near.count + 3) / 4 * 4; }
 
 /* The boxes of touch.near from the step's start to its end, as a crowd sees them that moves by `shift` within the step:
-   touch.passed, low[3] and high[3], each of all boxes; behind the last ones some that nothing reaches */
-static gx_result gxp_list_passed(gx_body *body, const double shift[3]) {
+   touch.passed, low[3] and high[3], each of all boxes; behind the last ones some that nothing reaches. Then the boxes
+   in which samples are that meet a facet in them: wider by the way from a sample to it, see gxp_box_gap. */
+static gx_result gxp_list_passed(gx_body *body, const gxp_touch_crowd *crowd, const double shift[3]) {
     gxp_touch *t = &body->touch;
     const size_t n = gxp_passed_stride(t);
+    const double width = crowd->beside + GXP_TOUCH_SLANT * GXP_MOST(crowd->slack, crowd->ahead) + 1e-9 * crowd->size;
     size_t i;
     int k;
     const gx_result result =
-        gxp_reserve(&body->config.allocator, &t->passed, sizeof *t->passed, 0, &t->passed_capacity, 6 * n);
-    for (i = 0; i < n && result == GX_OK; i++) {
-        gxp_touch_box none;
-        const gxp_touch_box *box = i < t->near.count ? &t->boxes[t->near.data[i]] : &none;
-        if (box == &none) {
-            gxp_empty_bounds(&none.from);
-            gxp_empty_bounds(&none.to);
-        }
+        gxp_reserve(&body->config.allocator, &t->passed, sizeof *t->passed, 0, &t->passed_capacity, 12 * n);
+    for (i = 0; i < t->near.count && result == GX_OK; i++) {
+        const gxp_touch_box *box = &t->boxes[t->near.data[i]];
         for (k = 0; k < 3; k++) {
             const double low = box->to.low[k] - shift[k], high = box->to.high[k] - shift[k];
-            t->passed[n * (size_t)k + i] = box->from.low[k] < low ? box->from.low[k] : low;
-            t->passed[n * (size_t)(3 + k) + i] = box->from.high[k] > high ? box->from.high[k] : high;
+            double *side = t->passed + n * (size_t)k + i, least, most;
+            gxp_range_product(-crowd->ahead, crowd->slack, box->normals.low[k], box->normals.high[k], &least, &most);
+            side[0] = box->from.low[k] < low ? box->from.low[k] : low;
+            side[3 * n] = box->from.high[k] > high ? box->from.high[k] : high;
+            side[6 * n] = side[0] - most - width;
+            side[9 * n] = side[3 * n] - least + width;
         }
     }
+    for (; i < n && result == GX_OK; i++)
+        for (k = 0; k < 12; k++) t->passed[n * (size_t)k + i] = k % 6 < 3 ? GXP_TREE_ALL : -GXP_TREE_ALL;
     return result;
 }
 
-/* Finds the leaves of touch.near that are within reach of a sample: `kept`, with the nearest one first. gaps: how far
-   each is at least. Returns how many */
-static uint32_t gxp_keep_leaves(const gxp_touch *t, const double *x, double dt, const double shift[3], double reach,
-                                uint32_t *kept, double *gaps) {
+/* How far the i-th box of touch.passed is from what is between two corners, along the axis along which it is furthest
+ */
+static double gxp_passed_gap(const gxp_touch *t, size_t i, const double from[3], const double to[3]) {
     const size_t n = gxp_passed_stride(t);
-    const double *side = t->passed;
+    const double *side = t->passed + i;
+    double gap = -GXP_TREE_ALL;
+    int k;
+    for (k = 0; k < 3; k++, side += n) {
+        const double left = side[0] - to[k], right = from[k] - side[3 * n], most = GXP_MOST(left, right);
+        gap = GXP_MOST(gap, most);
+    }
+    return gap;
+}
+
+/* Finds the leaves of touch.near that a sample may meet: `kept`, with the nearest one first. gaps: how far each is at
+   least; at most `reach` if the sample is known to meet something so near, or else as far as the crowd's ways to facets
+   are. Returns how many */
+static uint32_t gxp_keep_leaves(const gxp_touch *t, const double *x, double dt, const double shift[3], int known,
+                                double reach, uint32_t *kept, double *gaps) {
+    const size_t n = gxp_passed_stride(t);
+    const double *side = t->passed + (known ? 0 : 6 * n), more = known ? reach : 0;
     double from[3], to[3];
     uint32_t count = 0, first = 0;
     size_t i, j;
     int k;
     for (k = 0; k < 3; k++) {
         const double end = x[k] + dt * x[3 + k] - shift[k];
-        from[k] = (x[k] < end ? x[k] : end) - reach;
-        to[k] = (x[k] > end ? x[k] : end) + reach;
+        from[k] = (x[k] < end ? x[k] : end) - more;
+        to[k] = (x[k] > end ? x[k] : end) + more;
     }
-    for (i = 0; i < n; i += 4) {
-        double far[4];
+    for (i = 0; i < n; i += 4, side += 4) {
+        int64_t far[4];
+        GXP_EACH_LANE(j)
+        GXP_FLAGS(far) = GXP_ABOVE(GXP_LANE(side), to[0]) | GXP_ABOVE(from[0], GXP_LANE(side + 3 * n)) |
+                         GXP_ABOVE(GXP_LANE(side + n), to[1]) | GXP_ABOVE(from[1], GXP_LANE(side + 4 * n)) |
+                         GXP_ABOVE(GXP_LANE(side + 2 * n), to[2]) | GXP_ABOVE(from[2], GXP_LANE(side + 5 * n));
         for (j = 0; j < 4; j++) {
-            const double *low = side + i + j, *high = low + 3 * n;
-            const double a = GXP_MOST(low[0] - to[0], from[0] - high[0]),
-                         b = GXP_MOST(low[n] - to[1], from[1] - high[n]),
-                         c = GXP_MOST(low[2 * n] - to[2], from[2] - high[2 * n]), ab = GXP_MOST(a, b);
-            far[j] = GXP_MOST(ab, c);
-        }
-        for (j = 0; j < 4 && i + j < t->near.count; j++) {
-            kept[count] = t->near.data[i + j];
-            gaps[count] = far[j] + reach;
-            count += (uint32_t)(far[j] <= 0);
+            kept[count] = (uint32_t)(i + j);
+            count += (uint32_t)(far[j] == 0);
         }
     }
-    for (i = 1; i < count; i++)
+    for (i = 0; i < count; i++) {
+        gaps[i] = gxp_passed_gap(t, kept[i], from, to) + more;
+        kept[i] = t->near.data[kept[i]];
         if (gaps[i] < gaps[first]) first = (uint32_t)i;
+    }
     if (first > 0) {
         const uint32_t leaf = kept[first];
         const double gap = gaps[first];
@@ -13142,10 +13185,10 @@ static uint32_t gxp_keep_leaves(const gxp_touch *t, const double *x, double dt, 
     return count;
 }
 
-/* Which of a leaf's facets are not beyond what a sample meets, as bits? far: above 0 where they are */
-static uint32_t gxp_facet_bits(const double far[GXP_TOUCH_LEAF]) {
+/* Which of a leaf's facets are not far, as bits? */
+static uint32_t gxp_facet_bits(const int64_t far[GXP_TOUCH_LEAF]) {
     uint32_t j, bits = 0;
-    for (j = 0; j < GXP_TOUCH_LEAF; j++) bits |= (uint32_t)(far[j] <= 0) << j;
+    for (j = 0; j < GXP_TOUCH_LEAF; j++) bits |= (uint32_t)(far[j] == 0) << j;
     return bits;
 }
 
@@ -13157,27 +13200,25 @@ static uint32_t gxp_facets_ahead(const gxp_touch *t, const gxp_touch_leaf *leaf,
     const double bit = 1e-9 * v->size, depth = t->desc.depth * v->size + bit, ahead = GXP_TOUCH_NEAR * v->size + bit;
     const double spread = dt * leaf->spread, beside = GXP_TOUCH_BESIDE * v->size + bit;
     const double way[3] = {dt * (leaf->speed[0] - x[3]), dt * (leaf->speed[1] - x[4]), dt * (leaf->speed[2] - x[5])};
-    double far[GXP_TOUCH_LEAF], height[GXP_TOUCH_LEAF], wide[GXP_TOUCH_LEAF];
+    double height[GXP_TOUCH_LEAF];
+    int64_t far[GXP_TOUCH_LEAF];
     uint32_t n, j;
-    for (j = 0; j < GXP_TOUCH_LEAF; j++) { /* compilers make vectors of these loops if they are as plain as that */
-        const double a = leaf->normal[0][j], b = leaf->normal[1][j], c = leaf->normal[2][j];
-        const double facing = a * x[6] + b * x[7] + c * x[8] + GXP_TOUCH_FACING * (1 - 1e-9);
-        const double h = a * x[0] + b * x[1] + c * x[2] - leaf->height[j], off = fabs(h);
-        const double end = h - (a * way[0] + b * way[1] + c * way[2] + spread);
-        const double least = (h < end ? h : end) - ahead, one = GXP_MOST(facing, least);
-        const double behind = -h - depth, beyond = off - near, other = GXP_MOST(behind, beyond);
-        far[j] = GXP_MOST(one, other);
-        height[j] = h;
-        wide[j] = beside + GXP_TOUCH_SLANT * off;
+    GXP_EACH_LANE(j) {
+        const gxp_lane a = GXP_LANE(leaf->normal[0]), b = GXP_LANE(leaf->normal[1]), c = GXP_LANE(leaf->normal[2]);
+        const gxp_lane h = a * x[0] + b * x[1] + c * x[2] - GXP_LANE(leaf->height);
+        const gxp_lane end = h - (a * way[0] + b * way[1] + c * way[2] + spread);
+        GXP_FLAGS(far) = GXP_ABOVE(a * x[6] + b * x[7] + c * x[8], -GXP_TOUCH_FACING * (1 - 1e-9)) |
+                         (GXP_ABOVE(h, ahead) & GXP_ABOVE(end, ahead)) | GXP_ABOVE(-h, depth) | GXP_ABOVE(h, near) |
+                         GXP_ABOVE(-h, near);
+        GXP_LANE(height) = h;
     }
     if (gxp_facet_bits(far) == 0) return 0;
-    for (n = 0; n < 3; n++)
-        for (j = 0; j < GXP_TOUCH_LEAF; j++) {
-            const double a = leaf->out[n][0][j], b = leaf->out[n][1][j], c = leaf->out[n][2][j];
-            const double out = a * x[0] + b * x[1] + c * x[2] - leaf->reach[n][j] - wide[j];
-            const double end = out - (a * way[0] + b * way[1] + c * way[2] + (1 + GXP_TOUCH_SLANT) * spread);
-            const double least = end < out ? end : out, now = height[j] > 0 ? least : out;
-            far[j] = GXP_MOST(far[j], now);
+    for (n = 0; n < 3; n++) GXP_EACH_LANE(j) {
+            const gxp_lane a = GXP_LANE(leaf->out[n][0]), b = GXP_LANE(leaf->out[n][1]), c = GXP_LANE(leaf->out[n][2]);
+            const gxp_lane h = GXP_LANE(height), wide = beside + GXP_TOUCH_SLANT * GXP_LANE_SIZE(h);
+            const gxp_lane out = a * x[0] + b * x[1] + c * x[2] - GXP_LANE(leaf->reach[n]) - wide;
+            const gxp_lane end = out - (a * way[0] + b * way[1] + c * way[2] + (1 + GXP_TOUCH_SLANT) * spread);
+            GXP_FLAGS(far) |= GXP_ABOVE(out, 0.0) & (~GXP_ABOVE(h, 0.0) | GXP_ABOVE(end, 0.0));
         }
     return gxp_facet_bits(far);
 }
@@ -13191,7 +13232,8 @@ static void gxp_seek_facet(const gx_body *body, const gxp_touch_surface *s, doub
     const double *x = t->moved + 9 * (size_t)best->sample, slack = gxp_touch_slack(t, v) * (1 + 1e-9);
     double near = gxp_pair_slack(s, best, slack);
     uint32_t *kept = t->kept_leaves.data, i, bits, facet;
-    const uint32_t count = gxp_keep_leaves(t, x, dt, shift, near + 1e-9 * v->size, kept, t->gaps);
+    const uint32_t count =
+        gxp_keep_leaves(t, x, dt, shift, best->facet != GXP_NONE, near + 1e-9 * v->size, kept, t->gaps);
     for (i = 0; i < count; i++) {
         const uint32_t leaf = kept[i] + 1 - t->leaf_count;
         if (t->gaps[i] > near + 1e-9 * v->size) continue;
@@ -13232,7 +13274,7 @@ static gx_result gxp_seek_few(gx_body *body, const gxp_touch_surface *s, double 
     if (result == GX_OK)
         result = gxp_reserve(&body->config.allocator, &t->gaps, sizeof *t->gaps, 0, &t->gap_capacity,
                              (size_t)t->near.count + 1);
-    if (result == GX_OK) result = gxp_list_passed(body, shift);
+    if (result == GX_OK) result = gxp_list_passed(body, &crowd, shift);
     for (i = 0; i < count && result == GX_OK; i++) {
         if (t->near.count > 0) gxp_seek_facet(body, s, dt, shift, &best[i]);
         s->guesses.data[samples[i]] = best[i].facet;
@@ -20287,6 +20329,12 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_SEARCH_MARGIN
 #undef GXP_TOUCH_CREASE
 #undef GXP_TOUCH_LEAF
+#undef GXP_EACH_LANE
+#undef GXP_LANE
+#undef GXP_LANES
+#undef GXP_FLAGS
+#undef GXP_ABOVE
+#undef GXP_LANE_SIZE
 #undef GXP_MOST
 #undef GXP_TOUCH_EVEN
 #undef GXP_TOUCH_APART
