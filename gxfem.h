@@ -1599,6 +1599,7 @@ typedef struct gxp_touch_pair {  /* of a step */
 typedef struct gxp_touch_box { /* over facets */
     gxp_bounds from, to;       /* at the step's start, and at its end if nothing changes their velocities */
     gxp_bounds normals;        /* at the start */
+    int stirred;               /* 0: what is in it moves as in the last search, and is where it was */
 } gxp_touch_box;
 
 #define GXP_TOUCH_LEAF 4u /* facets in each leaf of the tree */
@@ -1670,9 +1671,12 @@ typedef struct gxp_touch {
     gxp_words ranked;        /* facets along a curve */
     gxp_words kept_leaves;   /* of these, those in reach of a sample */
     double *gaps;            /* m, of kept_leaves: how far they are from the sample at least */
-    double *passed;          /* 6 x near.count, rounded up: boxes of those leaves */
+    double *passed;          /* 12 x near.count, rounded up: boxes of those leaves, and where samples meet them */
     gxp_words crowd, near;   /* boxes that may hold what many samples meet; leaves that do what some of them meet */
     uint32_t leaf_count;     /* a power of two */
+    uint32_t sought;         /* the last search was for surfaces[sought - 1]; 0: for none of these, or it failed */
+    double sought_dt;        /* s: that search's */
+    gxp_words stirred;       /* of each vertex since: GXP_TOUCH_MOVED, _TURNED */
     uint32_t given;          /* pairs of the caller, which stand first */
     gxp_touch_event *events; /* of a call */
     uint32_t event_capacity;
@@ -1993,6 +1997,7 @@ static const gxp_column gxp_lists[] = {
     GXP_WORDS(touch.surfaces[0].guesses), GXP_WORDS(touch.surfaces[1].guesses),
     GXP_WORDS(touch.surfaces[0].samples), GXP_WORDS(touch.surfaces[1].samples),
     GXP_WORDS(touch.crowd),               GXP_WORDS(touch.near), GXP_WORDS(touch.kept_leaves),
+    GXP_WORDS(touch.stirred),
     GXP_LIST(touch.known, touch.known_capacity, sizeof(gxp_touch_known)),
     GXP_LIST(touch.pairs, touch.pair_capacity, sizeof(gxp_touch_pair)),
     GXP_LIST(touch.moved, touch.moved_capacity, 9 * sizeof(double)),
@@ -12142,6 +12147,7 @@ static gx_result gxp_make_surface(gx_body *body, gxp_touch_surface *to) {
     gx_skin_desc desc;
     gx_result result;
     memset(&body->skin, 0, sizeof body->skin);
+    body->touch.sought = 0;
     desc.crease_angle = GXP_TOUCH_CREASE;
     desc.smooth_cuts = 1;
     result = gxp_restart_skin(body, &desc);
@@ -12768,6 +12774,16 @@ static int gxp_has_changed(const gxp_touch *t, uint32_t id) {
 #define GXP_MOST(a, b) ((a) > (b) ? (a) : (b))
 #endif
 
+/* Since the last search: a vertex is elsewhere, or has another velocity; or that of a facet beside it */
+#define GXP_TOUCH_MOVED  1u
+#define GXP_TOUCH_TURNED 2u
+
+/* Is a corner of the facet not where it was in the last search, or faster or slower? */
+static int gxp_facet_moves(const gxp_touch *t, const gxp_touch_facet *f) {
+    return ((t->stirred.data[f->vertex[0]] | t->stirred.data[f->vertex[1]] | t->stirred.data[f->vertex[2]]) &
+            GXP_TOUCH_MOVED) != 0;
+}
+
 /* What the affine rate of a copy adds to the velocity of a material point along an axis; 0 where it has none */
 static double gxp_affine_speed(const gx_body *body, uint32_t copy, const double rest[3], int axis) {
     const double *x = body->mesh.positions + 3 * (size_t)body->copies.node[copy];
@@ -12778,30 +12794,42 @@ static double gxp_affine_speed(const gx_body *body, uint32_t copy, const double 
     return speed;
 }
 
-/* Position, velocity and normal of all vertices, normals of facets */
-static void gxp_move_surface(gx_body *body, const gxp_touch_surface *s) {
+/* Position and velocity of a vertex: x */
+static void gxp_move_vertex(const gx_body *body, const gxp_touch_vertex *v, double x[6]) {
+    int n, k;
+    gxp_map_point(body, v->rest, v->copies, v->weights, 4, x);
+    for (k = 3; k < 6; k++) x[k] = 0;
+    for (n = 0; n < 4 && v->weights[n] > 0; n++)
+        for (k = 0; k < 3; k++)
+            x[3 + k] += v->weights[n] * (body->copies.velocity[3 * (size_t)v->copies[n] + (size_t)k] +
+                                         gxp_affine_speed(body, v->copies[n], v->rest, k));
+}
+
+/* Position, velocity and normal of all vertices, normals of facets; touch.stirred. anew: there are none of a step
+   before */
+static void gxp_move_surface(gx_body *body, const gxp_touch_surface *s, int anew) {
     double *moved = body->touch.moved;
-    uint32_t i;
+    uint32_t *stirred = body->touch.stirred.data, i;
     int n, k;
     for (i = 0; i < s->vertex_count; i++) {
-        const gxp_touch_vertex *v = &s->vertices[i];
-        double *x = moved + 9 * (size_t)i;
-        gxp_map_point(body, v->rest, v->copies, v->weights, 4, x);
-        for (k = 3; k < 9; k++) x[k] = 0;
-        for (n = 0; n < 4 && v->weights[n] > 0; n++)
-            for (k = 0; k < 3; k++)
-                x[3 + k] += v->weights[n] * (body->copies.velocity[3 * (size_t)v->copies[n] + (size_t)k] +
-                                             gxp_affine_speed(body, v->copies[n], v->rest, k));
+        double *x = moved + 9 * (size_t)i, now[6];
+        gxp_move_vertex(body, &s->vertices[i], now);
+        stirred[i] = anew || memcmp(x, now, sizeof now) != 0 ? GXP_TOUCH_MOVED : 0;
+        memcpy(x, now, sizeof now);
+        for (k = 6; k < 9; k++) x[k] = 0;
     }
     for (i = 0; i < s->facet_count; i++) {
         static const uint32_t corner[3] = {0, 1, 2};
         double x[9], n_area[3], *unit = body->touch.facing + 3 * (size_t)i;
+        const int moves = gxp_facet_moves(&body->touch, &s->facets[i]);
         for (n = 0; n < 3; n++) memcpy(x + 3 * n, moved + 9 * (size_t)s->facets[i].vertex[n], 3 * sizeof *x);
         gxp_triangle_normal(x, corner, n_area);
         unit[0] = unit[1] = unit[2] = 0;
         (void)gxp_unit(n_area, unit);
-        for (n = 0; n < 3; n++)
+        for (n = 0; n < 3; n++) {
             for (k = 0; k < 3; k++) moved[9 * (size_t)s->facets[i].vertex[n] + 6 + (size_t)k] += n_area[k];
+            if (moves) stirred[s->facets[i].vertex[n]] |= GXP_TOUCH_TURNED;
+        }
     }
     for (i = 0; i < s->vertex_count; i++) {
         double unit[3] = {0, 0, 0};
@@ -12924,6 +12952,32 @@ static void gxp_try_facet(const gx_body *body, const gxp_touch_surface *s, doubl
    of the last step as the first bound. What is left out cannot be met, or is further than what is found: so a sample
    meets the same facet as by trying all. */
 
+/* Several of four numbers at a time: gcc does not make vectors of loops that compare. GXP_EACH_LANE begins a loop over
+   them; GXP_LANE: those at work, of four doubles; GXP_FLAGS: likewise, of four integers, what GXP_ABOVE, with | & ~,
+   has told: 0 if it is not so. Vectors longer than the machine's would be compared number by number. */
+#if !defined(GXFEM_SCALAR) && !defined(GXFEM_INTRINSICS) && (defined(__SSE2__) || defined(__aarch64__)) &&             \
+    (defined(__clang__) || defined(__GNUC__))
+#ifdef __AVX__
+#define GXP_LANES 4u
+#else
+#define GXP_LANES 2u
+#endif
+typedef __attribute__((vector_size(8 * GXP_LANES), aligned(8), may_alias)) double gxp_lane;
+typedef __attribute__((vector_size(8 * GXP_LANES), aligned(8), may_alias)) int64_t gxp_lane_flags;
+#define GXP_LANE(x)      (*(gxp_lane *)((x) + j))
+#define GXP_FLAGS(x)     (*(gxp_lane_flags *)((x) + j))
+#define GXP_ABOVE(a, b)  ((gxp_lane_flags)((a) > (b)))
+#define GXP_LANE_SIZE(a) ((gxp_lane)((gxp_lane_flags)(a)&INT64_MAX))
+#else
+#define GXP_LANES        1u
+typedef double gxp_lane;
+#define GXP_LANE(x)      ((x)[j])
+#define GXP_FLAGS(x)     ((x)[j])
+#define GXP_ABOVE(a, b)  ((int64_t)((a) > (b)))
+#define GXP_LANE_SIZE(a) fabs(a)
+#endif
+#define GXP_EACH_LANE(j) for (j = 0; j < 4; j += GXP_LANES)
+
 /* Samples that are sought together, at most: those that leave out boxes together first, then those that list leaves
    together. With half or twice of either a step takes up to 4 % longer. A cosine: how alike they face at rest */
 enum { GXP_TOUCH_MANY = 128, GXP_TOUCH_FEW = 32 };
@@ -12990,34 +13044,46 @@ static void gxp_fit_leaf(const gxp_touch *t, const gxp_touch_surface *s, uint32_
     }
 }
 
-/* Fits the boxes to the facets. */
-static void gxp_fit_facets(gx_body *body, const gxp_touch_surface *s, double dt) {
+/* Fits the box of a leaf to its facets: those from `first` to end - 1. */
+static void gxp_fit_box(const gxp_touch *t, const gxp_touch_surface *s, double dt, uint32_t first, uint32_t end,
+                        gxp_touch_box *box) {
+    uint32_t j;
+    int n;
+    for (j = first; j < end; j++) {
+        gxp_add_to_bounds(t->facing + 3 * (size_t)j, &box->normals);
+        for (n = 0; n < 3; n++) {
+            const double *x = t->moved + 9 * (size_t)s->facets[j].vertex[n];
+            double to[3];
+            gxp_vertex_end(x, dt, to);
+            gxp_add_to_bounds(x, &box->from);
+            gxp_add_to_bounds(to, &box->to);
+        }
+    }
+}
+
+/* Fits the boxes to the facets. anew: none of them is fitted; else those in which nothing is stirred stay. */
+static void gxp_fit_facets(gx_body *body, const gxp_touch_surface *s, double dt, int anew) {
     gxp_touch *t = &body->touch;
     uint32_t i, j;
-    int n;
-    for (i = 0; GXP_TOUCH_LEAF * i < s->facet_count; i++) t->leaves[i].fitted = 0;
     for (i = 2 * t->leaf_count - 1; i-- > 0;) {
+        const int inner = i + 1 < t->leaf_count;
+        const uint32_t leaf = inner ? 0 : i + 1 - t->leaf_count, first = GXP_TOUCH_LEAF * leaf;
+        const uint32_t end = first + GXP_TOUCH_LEAF < s->facet_count ? first + GXP_TOUCH_LEAF : s->facet_count;
         gxp_touch_box *box = &t->boxes[i];
+        box->stirred = anew || (inner && (t->boxes[2 * i + 1].stirred || t->boxes[2 * i + 2].stirred));
+        for (j = first; j < end && !inner && !box->stirred; j++) box->stirred = gxp_facet_moves(t, &s->facets[j]);
+        if (!box->stirred) continue;
         gxp_empty_bounds(&box->from);
         gxp_empty_bounds(&box->to);
         gxp_empty_bounds(&box->normals);
-        for (j = 2 * i + 1; j <= 2 * i + 2 && i + 1 < t->leaf_count; j++) {
+        for (j = 2 * i + 1; j <= 2 * i + 2 && inner; j++) {
             gxp_add_bounds(&box->from, &t->boxes[j].from);
             gxp_add_bounds(&box->to, &t->boxes[j].to);
             gxp_add_bounds(&box->normals, &t->boxes[j].normals);
         }
-        if (i + 1 < t->leaf_count) continue;
-        for (j = GXP_TOUCH_LEAF * (i + 1 - t->leaf_count);
-             j < GXP_TOUCH_LEAF * (i + 2 - t->leaf_count) && j < s->facet_count; j++) {
-            gxp_add_to_bounds(t->facing + 3 * (size_t)j, &box->normals);
-            for (n = 0; n < 3; n++) {
-                const double *x = t->moved + 9 * (size_t)s->facets[j].vertex[n];
-                double end[3];
-                gxp_vertex_end(x, dt, end);
-                gxp_add_to_bounds(x, &box->from);
-                gxp_add_to_bounds(end, &box->to);
-            }
-        }
+        if (inner || first >= s->facet_count) continue;
+        gxp_fit_box(t, s, dt, first, end, box);
+        t->leaves[leaf].fitted = 0;
     }
 }
 
@@ -13097,9 +13163,9 @@ static void gxp_join_crowd(const gxp_touch *t, const gxp_touch_surface *s, doubl
 }
 
 /* Finds the boxes in and below those of `from`, or below the root, that may hold what a crowd meets: those of a level
-   of the tree with `level` boxes. */
+   of the tree with `level` boxes. stirred: only those in which something is */
 static gx_result gxp_narrow_boxes(gx_body *body, const gxp_touch_crowd *crowd, const gxp_words *from, uint32_t level,
-                                  gxp_words *found) {
+                                  int stirred, gxp_words *found) {
     const gxp_touch_box *boxes = body->touch.boxes;
     const double limit = crowd->slack * crowd->slack;
     uint32_t stack[64], count, i;
@@ -13109,7 +13175,7 @@ static gx_result gxp_narrow_boxes(gx_body *body, const gxp_touch_crowd *crowd, c
         stack[0] = from != NULL ? from->data[i] : 0;
         for (count = 1; count > 0 && result == GX_OK;) {
             const uint32_t box = stack[--count];
-            if (gxp_box_gap(&boxes[box], crowd, limit) > limit) continue;
+            if ((stirred && !boxes[box].stirred) || gxp_box_gap(&boxes[box], crowd, limit) > limit) continue;
             if (box + 1 >= level) {
                 result = gxp_push(body, found, box);
                 continue;
@@ -13141,62 +13207,79 @@ static double gxp_pair_slack(const gxp_touch_surface *s, const gxp_touch_pair *b
 static size_t gxp_passed_stride(const gxp_touch *t) { return ((size_t)t->near.count + 3) / 4 * 4; }
 
 /* The boxes of touch.near from the step's start to its end, as a crowd sees them that moves by `shift` within the step:
-   touch.passed, low[3] and high[3], each of all boxes; behind the last ones some that nothing reaches */
-static gx_result gxp_list_passed(gx_body *body, const double shift[3]) {
+   touch.passed, low[3] and high[3], each of all boxes; behind the last ones some that nothing reaches. Then the boxes
+   in which samples are that meet a facet in them: wider by the way from a sample to it, see gxp_box_gap. */
+static gx_result gxp_list_passed(gx_body *body, const gxp_touch_crowd *crowd, const double shift[3]) {
     gxp_touch *t = &body->touch;
     const size_t n = gxp_passed_stride(t);
+    const double width = crowd->beside + GXP_TOUCH_SLANT * GXP_MOST(crowd->slack, crowd->ahead) + 1e-9 * crowd->size;
     size_t i;
     int k;
     const gx_result result =
-        gxp_reserve(&body->config.allocator, &t->passed, sizeof *t->passed, 0, &t->passed_capacity, 6 * n);
-    for (i = 0; i < n && result == GX_OK; i++) {
-        gxp_touch_box none;
-        const gxp_touch_box *box = i < t->near.count ? &t->boxes[t->near.data[i]] : &none;
-        if (box == &none) {
-            gxp_empty_bounds(&none.from);
-            gxp_empty_bounds(&none.to);
-        }
+        gxp_reserve(&body->config.allocator, &t->passed, sizeof *t->passed, 0, &t->passed_capacity, 12 * n);
+    for (i = 0; i < t->near.count && result == GX_OK; i++) {
+        const gxp_touch_box *box = &t->boxes[t->near.data[i]];
         for (k = 0; k < 3; k++) {
             const double low = box->to.low[k] - shift[k], high = box->to.high[k] - shift[k];
-            t->passed[n * (size_t)k + i] = box->from.low[k] < low ? box->from.low[k] : low;
-            t->passed[n * (size_t)(3 + k) + i] = box->from.high[k] > high ? box->from.high[k] : high;
+            double *side = t->passed + n * (size_t)k + i, least, most;
+            gxp_range_product(-crowd->ahead, crowd->slack, box->normals.low[k], box->normals.high[k], &least, &most);
+            side[0] = box->from.low[k] < low ? box->from.low[k] : low;
+            side[3 * n] = box->from.high[k] > high ? box->from.high[k] : high;
+            side[6 * n] = side[0] - most - width;
+            side[9 * n] = side[3 * n] - least + width;
         }
     }
+    for (; i < n && result == GX_OK; i++)
+        for (k = 0; k < 12; k++) t->passed[n * (size_t)k + i] = k % 6 < 3 ? GXP_TREE_ALL : -GXP_TREE_ALL;
     return result;
 }
 
-/* Finds the leaves of touch.near that are within reach of a sample: `kept`, with the nearest one first. gaps: how far
-   each is at least. Returns how many */
-static uint32_t gxp_keep_leaves(const gxp_touch *t, const double *x, double dt, const double shift[3], double reach,
-                                uint32_t *kept, double *gaps) {
+/* How far the i-th box of touch.passed is from what is between two corners, along the axis along which it is furthest
+ */
+static double gxp_passed_gap(const gxp_touch *t, size_t i, const double from[3], const double to[3]) {
     const size_t n = gxp_passed_stride(t);
-    const double *side = t->passed;
+    const double *side = t->passed + i;
+    double gap = -GXP_TREE_ALL;
+    int k;
+    for (k = 0; k < 3; k++, side += n) {
+        const double left = side[0] - to[k], right = from[k] - side[3 * n], most = GXP_MOST(left, right);
+        gap = GXP_MOST(gap, most);
+    }
+    return gap;
+}
+
+/* Finds the leaves of touch.near that a sample may meet: `kept`, with the nearest one first. gaps: how far each is at
+   least; at most `reach` if the sample is known to meet something so near, or else as far as the crowd's ways to facets
+   are. Returns how many */
+static uint32_t gxp_keep_leaves(const gxp_touch *t, const double *x, double dt, const double shift[3], int known,
+                                double reach, uint32_t *kept, double *gaps) {
+    const size_t n = gxp_passed_stride(t);
+    const double *side = t->passed + (known ? 0 : 6 * n), more = known ? reach : 0;
     double from[3], to[3];
     uint32_t count = 0, first = 0;
     size_t i, j;
     int k;
     for (k = 0; k < 3; k++) {
         const double end = x[k] + dt * x[3 + k] - shift[k];
-        from[k] = (x[k] < end ? x[k] : end) - reach;
-        to[k] = (x[k] > end ? x[k] : end) + reach;
+        from[k] = (x[k] < end ? x[k] : end) - more;
+        to[k] = (x[k] > end ? x[k] : end) + more;
     }
-    for (i = 0; i < n; i += 4) {
-        double far[4];
+    for (i = 0; i < n; i += 4, side += 4) {
+        int64_t far[4];
+        GXP_EACH_LANE(j)
+        GXP_FLAGS(far) = GXP_ABOVE(GXP_LANE(side), to[0]) | GXP_ABOVE(from[0], GXP_LANE(side + 3 * n)) |
+                         GXP_ABOVE(GXP_LANE(side + n), to[1]) | GXP_ABOVE(from[1], GXP_LANE(side + 4 * n)) |
+                         GXP_ABOVE(GXP_LANE(side + 2 * n), to[2]) | GXP_ABOVE(from[2], GXP_LANE(side + 5 * n));
         for (j = 0; j < 4; j++) {
-            const double *low = side + i + j, *high = low + 3 * n;
-            const double a = GXP_MOST(low[0] - to[0], from[0] - high[0]),
-                         b = GXP_MOST(low[n] - to[1], from[1] - high[n]),
-                         c = GXP_MOST(low[2 * n] - to[2], from[2] - high[2 * n]), ab = GXP_MOST(a, b);
-            far[j] = GXP_MOST(ab, c);
-        }
-        for (j = 0; j < 4 && i + j < t->near.count; j++) {
-            kept[count] = t->near.data[i + j];
-            gaps[count] = far[j] + reach;
-            count += (uint32_t)(far[j] <= 0);
+            kept[count] = (uint32_t)(i + j);
+            count += (uint32_t)(far[j] == 0);
         }
     }
-    for (i = 1; i < count; i++)
+    for (i = 0; i < count; i++) {
+        gaps[i] = gxp_passed_gap(t, kept[i], from, to) + more;
+        kept[i] = t->near.data[kept[i]];
         if (gaps[i] < gaps[first]) first = (uint32_t)i;
+    }
     if (first > 0) {
         const uint32_t leaf = kept[first];
         const double gap = gaps[first];
@@ -13208,10 +13291,10 @@ static uint32_t gxp_keep_leaves(const gxp_touch *t, const double *x, double dt, 
     return count;
 }
 
-/* Which of a leaf's facets are not beyond what a sample meets, as bits? far: above 0 where they are */
-static uint32_t gxp_facet_bits(const double far[GXP_TOUCH_LEAF]) {
+/* Which of a leaf's facets are not far, as bits? */
+static uint32_t gxp_facet_bits(const int64_t far[GXP_TOUCH_LEAF]) {
     uint32_t j, bits = 0;
-    for (j = 0; j < GXP_TOUCH_LEAF; j++) bits |= (uint32_t)(far[j] <= 0) << j;
+    for (j = 0; j < GXP_TOUCH_LEAF; j++) bits |= (uint32_t)(far[j] == 0) << j;
     return bits;
 }
 
@@ -13223,27 +13306,25 @@ static uint32_t gxp_facets_ahead(const gxp_touch *t, const gxp_touch_leaf *leaf,
     const double bit = 1e-9 * v->size, depth = t->desc.depth * v->size + bit, ahead = GXP_TOUCH_NEAR * v->size + bit;
     const double spread = dt * leaf->spread, beside = GXP_TOUCH_BESIDE * v->size + bit;
     const double way[3] = {dt * (leaf->speed[0] - x[3]), dt * (leaf->speed[1] - x[4]), dt * (leaf->speed[2] - x[5])};
-    double far[GXP_TOUCH_LEAF], height[GXP_TOUCH_LEAF], wide[GXP_TOUCH_LEAF];
+    double height[GXP_TOUCH_LEAF];
+    int64_t far[GXP_TOUCH_LEAF];
     uint32_t n, j;
-    for (j = 0; j < GXP_TOUCH_LEAF; j++) { /* compilers make vectors of these loops if they are as plain as that */
-        const double a = leaf->normal[0][j], b = leaf->normal[1][j], c = leaf->normal[2][j];
-        const double facing = a * x[6] + b * x[7] + c * x[8] + GXP_TOUCH_FACING * (1 - 1e-9);
-        const double h = a * x[0] + b * x[1] + c * x[2] - leaf->height[j], off = fabs(h);
-        const double end = h - (a * way[0] + b * way[1] + c * way[2] + spread);
-        const double least = (h < end ? h : end) - ahead, one = GXP_MOST(facing, least);
-        const double behind = -h - depth, beyond = off - near, other = GXP_MOST(behind, beyond);
-        far[j] = GXP_MOST(one, other);
-        height[j] = h;
-        wide[j] = beside + GXP_TOUCH_SLANT * off;
+    GXP_EACH_LANE(j) {
+        const gxp_lane a = GXP_LANE(leaf->normal[0]), b = GXP_LANE(leaf->normal[1]), c = GXP_LANE(leaf->normal[2]);
+        const gxp_lane h = a * x[0] + b * x[1] + c * x[2] - GXP_LANE(leaf->height);
+        const gxp_lane end = h - (a * way[0] + b * way[1] + c * way[2] + spread);
+        GXP_FLAGS(far) = GXP_ABOVE(a * x[6] + b * x[7] + c * x[8], -GXP_TOUCH_FACING * (1 - 1e-9)) |
+                         (GXP_ABOVE(h, ahead) & GXP_ABOVE(end, ahead)) | GXP_ABOVE(-h, depth) | GXP_ABOVE(h, near) |
+                         GXP_ABOVE(-h, near);
+        GXP_LANE(height) = h;
     }
     if (gxp_facet_bits(far) == 0) return 0;
-    for (n = 0; n < 3; n++)
-        for (j = 0; j < GXP_TOUCH_LEAF; j++) {
-            const double a = leaf->out[n][0][j], b = leaf->out[n][1][j], c = leaf->out[n][2][j];
-            const double out = a * x[0] + b * x[1] + c * x[2] - leaf->reach[n][j] - wide[j];
-            const double end = out - (a * way[0] + b * way[1] + c * way[2] + (1 + GXP_TOUCH_SLANT) * spread);
-            const double least = end < out ? end : out, now = height[j] > 0 ? least : out;
-            far[j] = GXP_MOST(far[j], now);
+    for (n = 0; n < 3; n++) GXP_EACH_LANE(j) {
+            const gxp_lane a = GXP_LANE(leaf->out[n][0]), b = GXP_LANE(leaf->out[n][1]), c = GXP_LANE(leaf->out[n][2]);
+            const gxp_lane h = GXP_LANE(height), wide = beside + GXP_TOUCH_SLANT * GXP_LANE_SIZE(h);
+            const gxp_lane out = a * x[0] + b * x[1] + c * x[2] - GXP_LANE(leaf->reach[n]) - wide;
+            const gxp_lane end = out - (a * way[0] + b * way[1] + c * way[2] + (1 + GXP_TOUCH_SLANT) * spread);
+            GXP_FLAGS(far) |= GXP_ABOVE(out, 0.0) & (~GXP_ABOVE(h, 0.0) | GXP_ABOVE(end, 0.0));
         }
     return gxp_facet_bits(far);
 }
@@ -13257,7 +13338,8 @@ static void gxp_seek_facet(const gx_body *body, const gxp_touch_surface *s, doub
     const double *x = t->moved + 9 * (size_t)best->sample, slack = gxp_touch_slack(t, v) * (1 + 1e-9);
     double near = gxp_pair_slack(s, best, slack);
     uint32_t *kept = t->kept_leaves.data, i, bits, facet;
-    const uint32_t count = gxp_keep_leaves(t, x, dt, shift, near + 1e-9 * v->size, kept, t->gaps);
+    const uint32_t count =
+        gxp_keep_leaves(t, x, dt, shift, best->facet != GXP_NONE, near + 1e-9 * v->size, kept, t->gaps);
     for (i = 0; i < count; i++) {
         const uint32_t leaf = kept[i] + 1 - t->leaf_count;
         if (t->gaps[i] > near + 1e-9 * v->size) continue;
@@ -13291,14 +13373,14 @@ static gx_result gxp_seek_few(gx_body *body, const gxp_touch_surface *s, double 
         slack = fmax(slack, gxp_pair_slack(s, &best[i], gxp_touch_slack(t, &s->vertices[samples[i]])));
     }
     crowd.slack = slack * (1 + 1e-9);
-    result = gxp_narrow_boxes(body, &crowd, &t->crowd, t->leaf_count, &t->near);
+    result = gxp_narrow_boxes(body, &crowd, &t->crowd, t->leaf_count, 0, &t->near);
     for (k = 0; k < 3; k++)
         shift[k] = 0.5 * (crowd.own.to.low[k] + crowd.own.to.high[k] - crowd.own.from.low[k] - crowd.own.from.high[k]);
     if (result == GX_OK) result = gxp_start_words(body, &t->kept_leaves, t->near.count + 1);
     if (result == GX_OK)
         result = gxp_reserve(&body->config.allocator, &t->gaps, sizeof *t->gaps, 0, &t->gap_capacity,
                              (size_t)t->near.count + 1);
-    if (result == GX_OK) result = gxp_list_passed(body, shift);
+    if (result == GX_OK) result = gxp_list_passed(body, &crowd, shift);
     for (i = 0; i < count && result == GX_OK; i++) {
         if (t->near.count > 0) gxp_seek_facet(body, s, dt, shift, &best[i]);
         s->guesses.data[samples[i]] = best[i].facet;
@@ -13317,8 +13399,18 @@ static uint32_t gxp_crowd_size(const gxp_touch_surface *s, const uint32_t *sampl
     return i;
 }
 
+/* Is nothing stirred of samples and of what they met in the last search? */
+static int gxp_crowd_rests(const gxp_touch *t, const gxp_touch_surface *s, const uint32_t *samples, uint32_t count) {
+    uint32_t i;
+    for (i = 0; i < count; i++) {
+        const uint32_t guess = s->guesses.data[samples[i]];
+        if (t->stirred.data[samples[i]] || (guess != GXP_NONE && gxp_facet_moves(t, &s->facets[guess]))) return 0;
+    }
+    return 1;
+}
+
 /* Finds the facets that all samples meet. Boxes that none of many samples meets are left out for all of them at once,
-   then those that none of a few meets. */
+   then those that none of a few meets. Samples that rest, and may meet nothing that does not, meet what they met. */
 static gx_result gxp_seek_facets(gx_body *body, const gxp_touch_surface *s, double dt) {
     gxp_touch *t = &body->touch;
     const uint32_t count = s->samples.count, *samples = s->samples.data;
@@ -13329,7 +13421,11 @@ static gx_result gxp_seek_facets(gx_body *body, const gxp_touch_surface *s, doub
         gxp_start_crowd(&crowd);
         n = gxp_crowd_size(s, samples + first, count - first, GXP_TOUCH_MANY);
         for (i = first; i < first + n; i++) gxp_join_crowd(t, s, dt, samples[i], &crowd);
-        result = gxp_narrow_boxes(body, &crowd, NULL, t->leaf_count / 8, &t->crowd);
+        if (gxp_crowd_rests(t, s, samples + first, n)) {
+            result = gxp_narrow_boxes(body, &crowd, NULL, t->leaf_count, 1, &t->crowd);
+            if (result != GX_OK || t->crowd.count == 0) continue;
+        }
+        result = gxp_narrow_boxes(body, &crowd, NULL, t->leaf_count / 8, 0, &t->crowd);
         if (t->crowd.count == 0)
             for (i = first; i < first + n; i++) s->guesses.data[samples[i]] = GXP_NONE;
         for (i = 0; i < n && t->crowd.count > 0 && result == GX_OK; i += few) {
@@ -13463,22 +13559,24 @@ static gx_result gxp_seek_colliders(gx_body *body, const gxp_touch_surface *s, d
 static gx_result gxp_seek_pairs(gx_body *body, const gxp_touch_surface *s, double dt, gx_failure *failure) {
     gxp_touch *t = &body->touch;
     gx_result result = gxp_list_all_beside(body, s, dt, failure);
-    uint32_t i, next = 0;
-    const uint32_t state_end = s->state_count > 0 ? s->states[s->state_count - 1].sample + 1 : 0;
+    uint32_t i, next = 0, at = 0;
     t->found = 0;
     if (result == GX_OK) result = gxp_end(failure, gxp_seek_facets(body, s, dt));
-    for (i = 0; i < s->vertex_count && result == GX_OK && s->facet_count > 0; i++) {
-        if (s->guesses.data[i] != GXP_NONE) {
+    if (result == GX_OK && t->filter == NULL) t->sought = s == &t->surfaces[0] ? 1 : 2;
+    t->sought_dt = dt;
+    for (i = 0; i < s->vertex_count + s->facet_count && result == GX_OK && s->facet_count > 0; i++) {
+        if (i >= s->vertex_count && next == t->order.count && at == s->state_count) break;
+        if (i < s->vertex_count && s->guesses.data[i] != GXP_NONE) {
             gxp_touch_pair pair = gxp_no_pair(i);
             pair.facet = s->guesses.data[i];
             (void)gxp_meets(body, s, dt, &pair); /* as it was found */
             result = gxp_list_pair(body, s, &pair, failure);
         }
-        if (result == GX_OK && (t->order.count > 0 || i < state_end))
+        while (at < s->state_count && s->states[at].sample < i) at++;
+        if (result == GX_OK && ((next < t->order.count && GXP_FIRST(t->order.data[next]) == i) ||
+                                (at < s->state_count && s->states[at].sample == i)))
             result = gxp_seek_colliders(body, s, dt, i, &next, failure);
     }
-    for (; i < s->vertex_count + s->facet_count && (next < t->order.count || i < state_end) && result == GX_OK; i++)
-        result = gxp_seek_colliders(body, s, dt, i, &next, failure);
     return result;
 }
 
@@ -13492,6 +13590,8 @@ static gx_result gxp_surface_room(gx_body *body, const gxp_touch_surface *s) {
     gxp_touch *t = &body->touch;
     gx_result result = gxp_reserve(a, &t->moved, 9 * sizeof(double), 0, &t->moved_capacity, s->vertex_count);
     for (t->leaf_count = 1; GXP_TOUCH_LEAF * (size_t)t->leaf_count < s->facet_count;) t->leaf_count *= 2;
+    t->stirred.count = 0;
+    if (result == GX_OK) result = gxp_words_room(body, &t->stirred, s->vertex_count);
     if (result == GX_OK)
         result = gxp_reserve(a, &t->facing, 3 * sizeof(double), 0, &t->facing_capacity, s->facet_count);
     if (result == GX_OK)
@@ -13644,6 +13744,7 @@ static gx_result gxp_attach_contact(gx_body *body, const gx_step_desc *desc, gxs
                                     gxp_touch_surface **surface, gx_failure *failure) {
     const double dt = gxp_is_finite(step->dt) && step->dt > 0 ? step->dt : 0;
     gx_result result;
+    int anew;
     body->touch.kept = 0;
     if (step->quality > 0) return gxp_refuse(failure, "quality"); /* its parts would not search again */
     if (step->integrator == GXS_MIDPOINT) return gxp_refuse(failure, "integrator");
@@ -13653,8 +13754,11 @@ static gx_result gxp_attach_contact(gx_body *body, const gx_step_desc *desc, gxs
     result = gxp_step_surface(body, surface);
     if (result == GX_OK) result = gxp_surface_room(body, *surface);
     if (gxp_end(failure, result) != GX_OK) return result;
-    gxp_move_surface(body, *surface);
-    gxp_fit_facets(body, *surface, dt);
+    anew = body->touch.sought != (*surface == &body->touch.surfaces[0] ? 1u : 2u) || body->touch.filter != NULL ||
+           body->touch.sought_dt < dt || body->touch.sought_dt > dt;
+    body->touch.sought = 0; /* until this search has succeeded */
+    gxp_move_surface(body, *surface, anew);
+    gxp_fit_facets(body, *surface, dt, anew);
     result = gxp_seek_pairs(body, *surface, dt, failure);
     return result == GX_OK ? gxp_end(failure, gxp_join_pairs(body, *surface, dt, step)) : result;
 }
@@ -20359,6 +20463,14 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_SEARCH_MARGIN
 #undef GXP_TOUCH_CREASE
 #undef GXP_TOUCH_LEAF
+#undef GXP_TOUCH_MOVED
+#undef GXP_TOUCH_TURNED
+#undef GXP_EACH_LANE
+#undef GXP_LANE
+#undef GXP_LANES
+#undef GXP_FLAGS
+#undef GXP_ABOVE
+#undef GXP_LANE_SIZE
 #undef GXP_MOST
 #undef GXP_TOUCH_EVEN
 #undef GXP_TOUCH_APART

@@ -1599,12 +1599,21 @@ typedef struct gxsp_tempo {
     uint64_t end;      /* hash of the displacement at its end */
 } gxsp_tempo;
 
+/* What friction of a pair needs of the step's start */
+typedef struct gxsp_grip {
+    double load;      /* at most this force, N */
+    double reach;     /* slip from which on it is, m */
+    double before[3]; /* m: relative position */
+} gxsp_grip;
+
 /* What the solver keeps from model to model */
 typedef struct gxsp_lasting {
     gxsp_pool pool;    /* of term, share and parts */
     gxsp_term *term;   /* of the present linearisation */
     gxsp_share *share; /* of all terms, one after the other */
     size_t count, room, share_count, share_room;
+    gxsp_grip *grip; /* grip_room: of each pair of the present step */
+    size_t grip_room;
     double *parts; /* part_room: what steps by quality keep of the start, see gxsp_parts */
     size_t part_room;
     gxsp_tempo tempo;
@@ -10067,6 +10076,7 @@ typedef struct gxsp_pull {
     double energy;      /* J */
     double force[3];    /* on the point, N */
     double hessian[6];  /* of the energy, N/m, packed */
+    int idle;           /* a pair that is open, and was before: it has no energy, no force, no Hessian */
 } gxsp_pull;
 
 /* The span of a point: its own arrays, or the caller's */
@@ -10206,48 +10216,52 @@ static void gxsp_contact_pull(const gxsp_problem *problem, size_t i, const doubl
  * those of springs and contact are at a position; slips and forces for the caller. Directions of pieces that only pairs
  * touch get the momentum that the pieces have together. */
 
-/* A pair in a step */
-typedef struct gxsp_grip {
-    double load;   /* of friction: at most this force, N */
-    double reach;  /* slip from which on it is, m */
-    double way[3]; /* slip since before the step, m; its part along the normal is not taken off */
-} gxsp_grip;
-
-/* Friction of a pair at a relative position. The load is that of the step's start. */
-static gxsp_grip gxsp_pair_grip(const gxsp_problem *problem, size_t i, const double *position) {
+/* Friction of the step's pairs. The loads are those of the step's start. */
+static void gxsp_find_grips(const gxsp_problem *problem) {
     const gxs_step_desc *step = problem->step;
-    const gxs_pair *pair = &step->pairs[i];
-    const double speed = pair->sticking_speed > 0 ? pair->sticking_speed : 1e-3;
-    double before[3], depth, elastic;
-    gxsp_grip grip;
+    size_t i;
     int c;
-    gxsp_point_position(&pair->point, problem->given, before);
-    for (c = 0; c < 3 && (pair->flags & GXS_PAIR_OUTSIDE); c++) before[c] += pair->way[c];
-    depth = pair->offset - gxsp_dot(pair->normal, before, 1);
-    elastic = depth > 0 ? pair->friction * depth : 0;
-    grip.load = pair->stiffness * elastic;
-    grip.reach = elastic > step->dt * speed ? elastic : step->dt * speed;
-    for (c = 0; c < 3; c++)
-        grip.way[c] = position[c] - before[c] + (step->pair_slips ? step->pair_slips[3 * i + (size_t)c] : 0);
-    return grip;
+    for (i = 0; i < step->pair_count; i++) {
+        const gxs_pair *pair = &step->pairs[i];
+        const double speed = pair->sticking_speed > 0 ? pair->sticking_speed : 1e-3;
+        gxsp_grip *grip = &problem->system->lasting->grip[i];
+        double depth, elastic;
+        gxsp_point_position(&pair->point, problem->given, grip->before);
+        for (c = 0; c < 3 && (pair->flags & GXS_PAIR_OUTSIDE); c++) grip->before[c] += pair->way[c];
+        depth = pair->offset - gxsp_dot(pair->normal, grip->before, 1);
+        elastic = depth > 0 ? pair->friction * depth : 0;
+        grip->load = pair->stiffness * elastic;
+        grip->reach = elastic > step->dt * speed ? elastic : step->dt * speed;
+    }
+}
+
+/* A pair's slip since before the step, m, at a relative position; its part along the normal is not taken off */
+static void gxsp_pair_way(const gxsp_problem *problem, size_t i, const double *position, double *way) {
+    const double *slips = problem->step->pair_slips, *before = problem->system->lasting->grip[i].before;
+    int c;
+    for (c = 0; c < 3; c++) way[c] = position[c] - before[c] + (slips ? slips[3 * i + (size_t)c] : 0);
 }
 
 static void gxsp_pair_pull(const gxsp_problem *problem, size_t i, const double *displacement, gxsp_pull *pull) {
     const gxs_pair *pair = &problem->step->pairs[i];
+    const gxsp_grip *grip = &problem->system->lasting->grip[i];
     double depth;
     int c;
     memset(pull, 0, sizeof *pull);
+    pull->idle = 1;
     gxsp_point_position(&pair->point, displacement, pull->position);
     depth = pair->offset - gxsp_dot(pair->normal, pull->position, 1);
     if (depth > 0) {
+        pull->idle = 0;
         pull->energy = 0.5 * pair->stiffness * depth * depth;
         for (c = 0; c < 3; c++) pull->force[c] = pair->stiffness * depth * pair->normal[c];
         gxsp_add_dyad(0, pair->stiffness, pair->normal, pull->hessian);
     }
-    if (pair->friction > 0) {
-        const gxsp_grip grip = gxsp_pair_grip(problem, i, pull->position);
-        if (grip.load > 0 && grip.reach > 0)
-            gxsp_friction_pull(pair->normal, grip.load, grip.reach, grip.way, problem->shortened, pull);
+    if (grip->load > 0 && grip->reach > 0) {
+        double way[3];
+        pull->idle = 0;
+        gxsp_pair_way(problem, i, pull->position, way);
+        gxsp_friction_pull(pair->normal, grip->load, grip->reach, way, problem->shortened, pull);
     }
 }
 
@@ -10343,20 +10357,20 @@ static void gxsp_report_pairs(const gxsp_problem *problem, const double *ends) {
     int c;
     for (i = 0; i < step->pair_count; i++) {
         const double *n = step->pairs[i].normal;
+        const gxsp_grip *grip = &problem->system->lasting->grip[i];
         gxsp_pull pull;
-        gxsp_grip grip;
-        double along, far;
+        double along, far, way[3];
         gxsp_pair_pull(problem, i, ends, &pull);
         if (step->pair_forces) memcpy(step->pair_forces + 3 * i, pull.force, sizeof pull.force);
         if (!step->pair_slips || !gxsp_point_moves(problem->system, &step->pairs[i].point)) continue;
-        grip = gxsp_pair_grip(problem, i, pull.position);
-        along = gxsp_dot(n, grip.way, 1);
-        for (c = 0; c < 3; c++) grip.way[c] -= along * n[c];
-        far = sqrt(gxsp_dot(grip.way, grip.way, 1));
+        gxsp_pair_way(problem, i, pull.position, way);
+        along = gxsp_dot(n, way, 1);
+        for (c = 0; c < 3; c++) way[c] -= along * n[c];
+        far = sqrt(gxsp_dot(way, way, 1));
         for (c = 0; c < 3; c++)
-            step->pair_slips[3 * i + (size_t)c] = !(grip.load > 0) ? 0
-                                                : far > grip.reach ? grip.way[c] * (grip.reach / far)
-                                                                   : grip.way[c];
+            step->pair_slips[3 * i + (size_t)c] = !(grip->load > 0) ? 0
+                                                : far > grip->reach ? way[c] * (grip->reach / far)
+                                                                    : way[c];
     }
 }
 
@@ -10441,7 +10455,9 @@ static void gxsp_evaluate(const gxsp_problem *problem, const double *from, int n
     while ((point = gxsp_next_pull(problem, &next, from, &pull)) != NULL) {
         const uint32_t *copies = gxsp_copies(point), count = point->count;
         const double *weights = gxsp_weights(point);
-        double *energies = gxsp_lead_of(problem->system, gxsp_point_copy(point))->energies;
+        double *energies;
+        if (pull.idle) continue;
+        energies = gxsp_lead_of(problem->system, gxsp_point_copy(point))->energies;
         energies[0] += pull.energy;
         energies[2] += fabs(pull.energy);
         for (c = 0; c < 3; c++) /* the gap of a spring is a small difference of large positions */
@@ -13221,6 +13237,12 @@ static int gxsp_reserve_terms(gxsp_lasting *lasting, const gxs_step_desc *step) 
         lasting->share = larger;
         lasting->share_room = shares;
     }
+    if (step->pair_count > lasting->grip_room) {
+        gxsp_grip *larger = (gxsp_grip *)gxsp_grow(&lasting->pool, lasting->grip, 0, step->pair_count, sizeof *larger);
+        if (!larger) return 0;
+        lasting->grip = larger;
+        lasting->grip_room = step->pair_count;
+    }
     return 1;
 }
 
@@ -13238,6 +13260,7 @@ static gx_result gxsp_step_once(gxs_solver *solver, const gxs_step_desc *step, d
     problem.system->state.product_rate = -1;
     problem.step = step;
     problem.given = displacement;
+    gxsp_find_grips(&problem);
     problem.cg_iterations = step->cg_iterations ? step->cg_iterations : 1000;
     problem.cg_tolerance = step->cg_tolerance > 0 ? step->cg_tolerance : step->integrator == GXS_MIDPOINT ? 1e-3 : 1e-2;
     problem.start = gxsp_now(&problem);

@@ -144,6 +144,9 @@ typedef struct sample {
     double weight[GXS_POINT_MOST], start[3 * COPIES], end[3 * COPIES], slip[3];
     gxs_step_desc step;
     gxsp_problem problem;
+    gxsp_system system;
+    gxsp_lasting lasting;
+    gxsp_grip grip;
 } sample;
 
 static void sample_make(sample *a, uint32_t count) {
@@ -178,6 +181,10 @@ static void sample_make(sample *a, uint32_t count) {
     a->step.pair_slips = a->slip;
     a->problem.step = &a->step;
     a->problem.given = a->start;
+    a->problem.system = &a->system;
+    a->system.lasting = &a->lasting;
+    a->lasting.grip = &a->grip;
+    gxsp_find_grips(&a->problem);
 }
 
 /* Energy by the header's formula, in long doubles */
@@ -222,6 +229,8 @@ START_TEST(formulas_match_differences) {
         gxsp_pair_pull(&a.problem, 0, a.end, &pull);
         assert_that(fabsl((long double)pull.energy - slow_energy(&a, a.end)) <= 1e-12L * (1 + slow_energy(&a, a.end)),
                     "%g %Lg", pull.energy, slow_energy(&a, a.end));
+        assert_that(!pull.idle || (!(slow_energy(&a, a.end) > 0) && !(gxsp_dot(pull.force, pull.force, 1) > 0)),
+                    "an idle pair has %g", pull.energy);
         touching += pull.energy > 0;
         sliding += pull.energy > 0 && a.pair.friction > 0;
         for (k = 0; k < (int)a.pair.point.count; k++)

@@ -154,51 +154,74 @@ static void try_plainly(const gx_body *body, const gxp_touch_surface *s, double 
     if (pair.score < best->score) *best = pair;
 }
 
-/* Random poses of random pieces: each vertex meets the same facet as by trying all. */
+/* Searches, and again by trying all: every sample has the same facet. Returns how many have one. */
+static size_t search_both_ways(gx_body *body, double dt, uint64_t seed) {
+    const gx_step_desc given = falling(1);
+    gxp_touch_surface *surface;
+    gxs_step_desc none;
+    size_t met = 0;
+    uint32_t v, f;
+    memset(&none, 0, sizeof none);
+    none.dt = dt;
+    ck_assert_int_eq(gxp_attach_contact(body, &given, &none, &surface, NULL), GX_OK);
+    for (v = 0; v < surface->vertex_count; v++) {
+        gxp_touch_pair best = gxp_no_pair(v);
+        if (!(surface->vertices[v].area > 0)) continue; /* no sample */
+        for (f = 0; f < surface->facet_count; f++) try_plainly(body, surface, dt, f, &best);
+        if (best.facet == GXB_NONE) continue;
+        CHECK_SEED(met < body->touch.found, seed);
+        CHECK_SEED(memcmp(&best, &body->touch.pairs[met], sizeof best) == 0, seed);
+        met++;
+    }
+    CHECK_SEED(met == body->touch.found, seed);
+    gxp_keep_contact(body, &given, surface);
+    surface->state_count = 0; /* nothing presses */
+    return met;
+}
+
+/* Moves each of the pieces that `chosen` has as bits, as a whole, and each of their copies a little. */
+static void throw_about(gx_body *body, uint64_t chosen, double round, uint64_t seed) {
+    const gx_view view = view_of(body);
+    size_t i;
+    for (i = 0; i < 3 * view.copy_count; i++) {
+        const uint32_t piece = gxp_find(body->view.copy_fragment.data, (uint32_t)(i / 3));
+        if (!(chosen >> (piece % 64) & 1)) continue;
+        view.displacement[i] =
+            0.3 * sin((double)(7 * piece + i % 3 + 31 * seed) + 0.1 * round) + random_real(-0.1, 0.1);
+        view.velocity[i] = 3 * cos((double)(5 * piece + i % 3)) + random_real(-0.3, 0.3);
+    }
+}
+
+/* Random poses of random pieces, some of which stay as they are from one search to the next: each vertex meets the same
+   facet as by trying all. A cut, a clone, steps of other lengths come between. */
 START_TEST(search_is_exhaustive) {
     const uint64_t seed = (uint64_t)_i + 1;
     workload w = grid(3, 3, 3, 6);
-    gx_body *body;
-    gxp_touch_surface *surface;
-    gxs_step_desc none;
-    const gx_step_desc given = falling(1);
-    gx_view view;
-    size_t i, met = 0;
-    uint32_t v, f;
+    gx_body *body, *twin = NULL;
+    double dt = 0.02;
+    size_t met = 0;
     int round;
     random_seed(seed);
-    for (round = 0; round < 3; round++) {
+    for (round = 0; round < 4; round++) {
         const double p[3] = {random_real(0, 3), random_real(0, 3), random_real(0, 3)},
                      n[3] = {random_real(-1, 1), random_real(-1, 1), random_real(0.1, 1)};
         add_plane(&w, p, n, 12);
     }
-    body = cut_in_sequence(&w);
+    body = body_of(&w);
+    for (round = 0; round < 3; round++) cut_by(body, &w, (size_t)round, 1);
     switch_on(body, 0);
-    for (round = 0; round < 3; round++) {
-        const double dt = random_below(3) == 0 ? 0 : 0.02;
-        view = view_of(body);
-        for (i = 0; i < 3 * view.copy_count; i++) { /* pieces as wholes, and each copy a little */
-            const uint32_t piece = gxp_find(body->view.copy_fragment.data, (uint32_t)(i / 3));
-            view.displacement[i] = 0.3 * sin((double)(7 * piece + i % 3 + 31 * seed)) + random_real(-0.1, 0.1);
-            view.velocity[i] = 3 * cos((double)(5 * piece + i % 3)) + random_real(-0.3, 0.3);
-        }
-        memset(&none, 0, sizeof none);
-        none.dt = dt;
-        ck_assert_int_eq(gxp_attach_contact(body, &given, &none, &surface, NULL), GX_OK);
-        for (v = 0, i = 0; v < surface->vertex_count; v++) {
-            gxp_touch_pair best;
-            best = gxp_no_pair(v);
-            if (!(surface->vertices[v].area > 0)) continue; /* no sample */
-            for (f = 0; f < surface->facet_count; f++) try_plainly(body, surface, dt, f, &best);
-            if (best.facet == GXB_NONE) continue;
-            CHECK_SEED(i < body->touch.found, seed);
-            CHECK_SEED(memcmp(&best, &body->touch.pairs[i], sizeof best) == 0, seed);
-            i++;
-        }
-        CHECK_SEED(i == body->touch.found, seed);
-        met += i;
+    for (round = 0; round < 9; round++) {
+        if (round != 3 && random_below(4) == 0) dt = random_below(3) == 0 ? 0 : 0.02;
+        if (round == 4) cut_by(body, &w, 3, 1);
+        if (round == 6) ck_assert_int_eq(gx_body_clone(body, &twin, NULL), GX_OK);
+        throw_about(body, round == 0 ? UINT64_MAX : round == 3 ? 0 : random_bits(), round, seed);
+        if (round == 7) body->touch.sought_dt = 1; /* as of a step of another length */
+        met += search_both_ways(body, dt, seed);
+        if (round == 3) ck_assert_int_eq(body->touch.boxes[0].stirred, 0);
     }
+    met += search_both_ways(twin, dt, seed);
     ck_assert_uint_gt(met, 20);
+    gx_body_destroy(twin);
     gx_body_destroy(body);
     wl_free(&w);
 }
