@@ -10136,14 +10136,18 @@ typedef struct gxsp_grip {
     double load;   /* of friction: at most this force, N */
     double reach;  /* slip from which on it is, m */
     double way[3]; /* slip since before the step, m; its part along the normal is not taken off */
+    int sticks;    /* it did not slide at the end of the last step */
 } gxsp_grip;
+
+/* A slip that is smaller than this share of where sliding begins sticks. */
+#define GXSP_STICKS 0.5
 
 /* Friction of a pair at a relative position. The load is that of the step's start. */
 static gxsp_grip gxsp_pair_grip(const gxsp_problem *problem, size_t i, const double *position) {
     const gxs_step_desc *step = problem->step;
     const gxs_pair *pair = &step->pairs[i];
     const double speed = pair->sticking_speed > 0 ? pair->sticking_speed : 1e-3;
-    double before[3], depth, elastic;
+    double before[3], slip[3], depth, elastic;
     gxsp_grip grip;
     int c;
     gxsp_point_position(&pair->point, problem->given, before);
@@ -10152,8 +10156,9 @@ static gxsp_grip gxsp_pair_grip(const gxsp_problem *problem, size_t i, const dou
     elastic = depth > 0 ? pair->friction * depth : 0;
     grip.load = pair->stiffness * elastic;
     grip.reach = elastic > step->dt * speed ? elastic : step->dt * speed;
-    for (c = 0; c < 3; c++)
-        grip.way[c] = position[c] - before[c] + (step->pair_slips ? step->pair_slips[3 * i + (size_t)c] : 0);
+    for (c = 0; c < 3; c++) slip[c] = step->pair_slips ? step->pair_slips[3 * i + (size_t)c] : 0;
+    for (c = 0; c < 3; c++) grip.way[c] = position[c] - before[c] + slip[c];
+    grip.sticks = gxsp_dot(slip, slip, 1) < GXSP_STICKS * GXSP_STICKS * grip.reach * grip.reach;
     return grip;
 }
 
@@ -10172,7 +10177,7 @@ static void gxsp_pair_pull(const gxsp_problem *problem, size_t i, const double *
     if (pair->friction > 0) {
         const gxsp_grip grip = gxsp_pair_grip(problem, i, pull->position);
         if (grip.load > 0 && grip.reach > 0)
-            gxsp_friction_pull(pair->normal, grip.load, grip.reach, grip.way, problem->shortened, pull);
+            gxsp_friction_pull(pair->normal, grip.load, grip.reach, grip.way, problem->shortened || grip.sticks, pull);
     }
 }
 
@@ -13993,6 +13998,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_NESTED_SLACK
 #undef GXSP_AFFINE_TASK
 #undef GXSP_AFFINE_ROUND
+#undef GXSP_STICKS
 #ifdef GXFEM_SCALAR
 #pragma clang attribute pop
 #endif
