@@ -1555,8 +1555,8 @@ typedef struct gxp_touch_vertex { /* of the surface: a sample */
     double area, size; /* m2: its share of the surface, 0 if it is no sample of pieces; m: of its element */
     double given;      /* m2: what area is without what other vertices have given, or before it was given away */
     uint32_t stands;   /* the sample that has its area: itself, or another vertex */
-    uint32_t unused;
-    double young; /* Pa */
+    uint32_t held;     /* of a step: 1 if it pressed on a facet at the end of the last one */
+    double young;      /* Pa */
 } gxp_touch_vertex;
 
 typedef struct gxp_touch_facet {
@@ -12760,9 +12760,14 @@ static int gxp_has_changed(const gxp_touch *t, uint32_t id) {
 
 /* A cosine: facets that face a vertex less do not meet it. */
 #define GXP_TOUCH_FACING 0.5
-/* In sizes of an element: how far beside a facet a vertex may be, with a share of its gap; from how far a sample of a
-   facet takes the state of another one; how far behind a facet at rest is a piece's own thickness */
+/* In sizes of an element: how far beside a facet a vertex may be, with a share of its gap, and one that pressed on a
+   facet before: else those at the rim of a face would be lost and found by turns, and nothing there comes to rest. From
+   how far a sample of a facet takes the state of another one; how far behind a facet at rest is a piece's own
+   thickness */
 #define GXP_TOUCH_BESIDE 0.002
+/* Of a facet: the height as a share of the longest side below which rounding makes its normal */
+#define GXP_TOUCH_THIN   1e-7
+#define GXP_TOUCH_HELD   0.02
 #define GXP_TOUCH_SLANT  0.1
 #define GXP_TOUCH_SAME   0.25
 #define GXP_TOUCH_BEHIND 1e-9
@@ -12805,8 +12810,8 @@ static void gxp_move_vertex(const gx_body *body, const gxp_touch_vertex *v, doub
                                          gxp_affine_speed(body, v->copies[n], v->rest, k));
 }
 
-/* Position, velocity and normal of all vertices, normals of facets; touch.stirred. anew: there are none of a step
-   before */
+/* Position, velocity and normal of all vertices, normals of facets; touch.stirred. A facet whose corners are in a line
+   but for rounding has no normal, and meets nothing: those beside it do. anew: there are none of a step before */
 static void gxp_move_surface(gx_body *body, const gxp_touch_surface *s, int anew) {
     double *moved = body->touch.moved;
     uint32_t *stirred = body->touch.stirred.data, i;
@@ -12820,12 +12825,13 @@ static void gxp_move_surface(gx_body *body, const gxp_touch_surface *s, int anew
     }
     for (i = 0; i < s->facet_count; i++) {
         static const uint32_t corner[3] = {0, 1, 2};
-        double x[9], n_area[3], *unit = body->touch.facing + 3 * (size_t)i;
+        double x[9], n_area[3], longest = 0, *unit = body->touch.facing + 3 * (size_t)i;
         const int moves = gxp_facet_moves(&body->touch, &s->facets[i]);
         for (n = 0; n < 3; n++) memcpy(x + 3 * n, moved + 9 * (size_t)s->facets[i].vertex[n], 3 * sizeof *x);
         gxp_triangle_normal(x, corner, n_area);
+        for (n = 0; n < 3; n++) longest = fmax(longest, gxp_square_distance(x + 3 * n, x + 3 * ((n + 1) % 3)));
         unit[0] = unit[1] = unit[2] = 0;
-        (void)gxp_unit(n_area, unit);
+        if (gxp_size(n_area) > GXP_TOUCH_THIN * longest) (void)gxp_unit(n_area, unit);
         for (n = 0; n < 3; n++) {
             for (k = 0; k < 3; k++) moved[9 * (size_t)s->facets[i].vertex[n] + 6 + (size_t)k] += n_area[k];
             if (moves) stirred[s->facets[i].vertex[n]] |= GXP_TOUCH_TURNED;
@@ -12854,14 +12860,19 @@ static int gxp_is_thickness(const gxp_touch_surface *s, const gxp_touch_vertex *
            gxp_dot(d, unit) < -GXP_TOUCH_BEHIND * v->size;
 }
 
+/* How far beside a facet a vertex may be if it has no gap, m */
+static double gxp_touch_aside(const gxp_touch_vertex *v) {
+    return (v->held ? GXP_TOUCH_HELD : GXP_TOUCH_BESIDE) * v->size;
+}
+
 /* How far from a vertex facets that it meets are at most, m */
 static double gxp_touch_slack(const gxp_touch *t, const gxp_touch_vertex *v) {
-    return (t->desc.depth * (1 + GXP_TOUCH_SLANT) + GXP_TOUCH_NEAR + GXP_TOUCH_BESIDE) * v->size;
+    return (t->desc.depth * (1 + GXP_TOUCH_SLANT) + GXP_TOUCH_NEAR) * v->size + gxp_touch_aside(v);
 }
 
 /* The same of facets that it is in front of, when it comes nearest to them */
 static double gxp_touch_ahead(const gxp_touch_vertex *v) {
-    return (GXP_TOUCH_NEAR * (1 + GXP_TOUCH_SLANT) + GXP_TOUCH_BESIDE) * v->size;
+    return GXP_TOUCH_NEAR * (1 + GXP_TOUCH_SLANT) * v->size + gxp_touch_aside(v);
 }
 
 /* The height of a place above the plane through a corner of a facet */
@@ -12914,7 +12925,7 @@ static int gxp_meets(const gx_body *body, const gxp_touch_surface *s, double dt,
     reach = t->desc.depth * fmin(v->size, s->vertices[f->vertex[0]].size);
     if (!(pair->gap > -reach * facing) ||
         !(pair->gap - (pair->approach > 0 ? dt * pair->approach : 0) < GXP_TOUCH_NEAR * v->size) ||
-        !(along <= GXP_TOUCH_BESIDE * v->size + GXP_TOUCH_SLANT * fabs(height)) || !(square < slack * slack))
+        !(along <= gxp_touch_aside(v) + GXP_TOUCH_SLANT * fabs(height)) || !(square < slack * slack))
         return 0;
     pair->score = (square + pair->gap * pair->gap) / (facing * facing);
     return v->fragment != f->fragment || !gxp_is_thickness(s, v, f, pair->share, reach);
@@ -13150,16 +13161,17 @@ static void gxp_join_crowd(const gxp_touch *t, const gxp_touch_surface *s, doubl
                            gxp_touch_crowd *crowd) {
     const gxp_touch_vertex *v = &s->vertices[sample];
     const double *x = t->moved + 9 * (size_t)sample, more = 1 + 1e-9;
+    const double slack = gxp_touch_slack(t, v) * more, ahead = gxp_touch_ahead(v) * more,
+                 beside = gxp_touch_aside(v) + 1e-9 * v->size;
     double end[3];
     gxp_vertex_end(x, dt, end);
     gxp_add_to_bounds(x, &crowd->own.from);
     gxp_add_to_bounds(end, &crowd->own.to);
     gxp_add_to_bounds(x + 6, &crowd->own.normals);
-    if (!(v->size > crowd->size)) return; /* all reaches grow with the size */
-    crowd->size = v->size;
-    crowd->slack = gxp_touch_slack(t, v) * more;
-    crowd->ahead = gxp_touch_ahead(v) * more;
-    crowd->beside = GXP_TOUCH_BESIDE * v->size + 1e-9 * v->size;
+    crowd->size = GXP_MOST(crowd->size, v->size);
+    crowd->slack = GXP_MOST(crowd->slack, slack);
+    crowd->ahead = GXP_MOST(crowd->ahead, ahead);
+    crowd->beside = GXP_MOST(crowd->beside, beside);
 }
 
 /* Finds the boxes in and below those of `from`, or below the root, that may hold what a crowd meets: those of a level
@@ -13304,7 +13316,7 @@ static uint32_t gxp_facet_bits(const int64_t far[GXP_TOUCH_LEAF]) {
 static uint32_t gxp_facets_ahead(const gxp_touch *t, const gxp_touch_leaf *leaf, const gxp_touch_vertex *v,
                                  const double *x, double dt, double near) {
     const double bit = 1e-9 * v->size, depth = t->desc.depth * v->size + bit, ahead = GXP_TOUCH_NEAR * v->size + bit;
-    const double spread = dt * leaf->spread, beside = GXP_TOUCH_BESIDE * v->size + bit;
+    const double spread = dt * leaf->spread, beside = gxp_touch_aside(v) + bit;
     const double way[3] = {dt * (leaf->speed[0] - x[3]), dt * (leaf->speed[1] - x[4]), dt * (leaf->speed[2] - x[5])};
     double height[GXP_TOUCH_LEAF];
     int64_t far[GXP_TOUCH_LEAF];
@@ -13555,6 +13567,20 @@ static gx_result gxp_seek_colliders(gx_body *body, const gxp_touch_surface *s, d
     return result == GX_OK ? gxp_wake_left(body, s, sample, first, failure) : result;
 }
 
+/* Notes which samples pressed on a facet at the end of the last step. One of which that has changed may meet others. */
+static void gxp_mark_held(gxp_touch *t, gxp_touch_surface *s) {
+    enum { WAS = 2 };
+    uint32_t i;
+    for (i = 0; i < s->vertex_count; i++) s->vertices[i].held = s->vertices[i].held ? WAS : 0;
+    for (i = 0; i < s->state_count; i++)
+        if (s->states[i].other == GXP_NONE && s->states[i].pressed > 0) s->vertices[s->states[i].sample].held |= 1;
+    for (i = 0; i < s->vertex_count; i++) {
+        const uint32_t held = s->vertices[i].held & 1;
+        if (held != s->vertices[i].held / WAS) t->stirred.data[i] |= GXP_TOUCH_TURNED;
+        s->vertices[i].held = held;
+    }
+}
+
 /* Lists the pairs of all samples. */
 static gx_result gxp_seek_pairs(gx_body *body, const gxp_touch_surface *s, double dt, gx_failure *failure) {
     gxp_touch *t = &body->touch;
@@ -13759,6 +13785,7 @@ static gx_result gxp_attach_contact(gx_body *body, const gx_step_desc *desc, gxs
     body->touch.sought = 0; /* until this search has succeeded */
     gxp_move_surface(body, *surface, anew);
     gxp_fit_facets(body, *surface, dt, anew);
+    gxp_mark_held(&body->touch, *surface);
     result = gxp_seek_pairs(body, *surface, dt, failure);
     return result == GX_OK ? gxp_end(failure, gxp_join_pairs(body, *surface, dt, step)) : result;
 }
@@ -20482,6 +20509,8 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_TOUCH_PARTS
 #undef GXP_TOUCH_FLAT
 #undef GXP_TOUCH_BESIDE
+#undef GXP_TOUCH_THIN
+#undef GXP_TOUCH_HELD
 #undef GXP_TOUCH_SLANT
 #undef GXP_TOUCH_SAME
 #undef GXP_TOUCH_BEHIND

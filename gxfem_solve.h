@@ -1604,6 +1604,7 @@ typedef struct gxsp_grip {
     double load;      /* at most this force, N */
     double reach;     /* slip from which on it is, m */
     double before[3]; /* m: relative position */
+    int sticks;       /* it did not slide at the end of the last step */
 } gxsp_grip;
 
 /* What the solver keeps from model to model */
@@ -10216,6 +10217,9 @@ static void gxsp_contact_pull(const gxsp_problem *problem, size_t i, const doubl
  * those of springs and contact are at a position; slips and forces for the caller. Directions of pieces that only pairs
  * touch get the momentum that the pieces have together. */
 
+/* A slip that is smaller than this share of where sliding begins sticks. */
+#define GXSP_STICKS 0.5
+
 /* Friction of the step's pairs. The loads are those of the step's start. */
 static void gxsp_find_grips(const gxsp_problem *problem) {
     const gxs_step_desc *step = problem->step;
@@ -10225,13 +10229,15 @@ static void gxsp_find_grips(const gxsp_problem *problem) {
         const gxs_pair *pair = &step->pairs[i];
         const double speed = pair->sticking_speed > 0 ? pair->sticking_speed : 1e-3;
         gxsp_grip *grip = &problem->system->lasting->grip[i];
-        double depth, elastic;
+        double depth, elastic, slip = 0;
         gxsp_point_position(&pair->point, problem->given, grip->before);
         for (c = 0; c < 3 && (pair->flags & GXS_PAIR_OUTSIDE); c++) grip->before[c] += pair->way[c];
         depth = pair->offset - gxsp_dot(pair->normal, grip->before, 1);
         elastic = depth > 0 ? pair->friction * depth : 0;
         grip->load = pair->stiffness * elastic;
         grip->reach = elastic > step->dt * speed ? elastic : step->dt * speed;
+        if (step->pair_slips) slip = gxsp_dot(step->pair_slips + 3 * i, step->pair_slips + 3 * i, 1);
+        grip->sticks = slip < GXSP_STICKS * GXSP_STICKS * grip->reach * grip->reach;
     }
 }
 
@@ -10261,7 +10267,7 @@ static void gxsp_pair_pull(const gxsp_problem *problem, size_t i, const double *
         double way[3];
         pull->idle = 0;
         gxsp_pair_way(problem, i, pull->position, way);
-        gxsp_friction_pull(pair->normal, grip->load, grip->reach, way, problem->shortened, pull);
+        gxsp_friction_pull(pair->normal, grip->load, grip->reach, way, problem->shortened || grip->sticks, pull);
     }
 }
 
@@ -14091,6 +14097,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_NESTED_SLACK
 #undef GXSP_AFFINE_TASK
 #undef GXSP_AFFINE_ROUND
+#undef GXSP_STICKS
 #ifdef GXFEM_SCALAR
 #pragma clang attribute pop
 #endif

@@ -10,14 +10,18 @@
        slip      the way of a block that is stopped by friction, m; parameter: time step, s
        collide   two halves meet at 3 m/s: momentum that is gone, of what there was; parameter: friction
        energy    of the same: the most there was, of the start's
-       pile      a block cut into `parameter` pieces falls on the ground: the deepest overlap of a contact at the end,
-   in h; asleep_s: after so long nothing moved any more (at the end: empty) cost      a block cut into pieces by leaning
-   planes; parameter: pieces. ms, first_ms: processor time of a step, mean and the first one after the cut; apart_ms:
-   without the linear algebra; the same with contact off. figure: a step with contact, of one without */
+       pile      a block cut into `parameter` pieces falls on the ground: how deep pieces are in each other or below the
+                 ground at the end, in h, by examples/gxoverlap.h, which shares nothing with contact; asleep_s: after
+                 so long nothing moved any more (empty: it did at the end)
+       flight    of the same: the deepest on the way, in h
+       cost      a block cut into pieces by leaning planes; parameter: pieces. ms, first_ms: processor time of a step,
+                 mean and the first one after the cut; apart_ms: without the linear algebra; the same with contact
+                 off. figure: a step with contact, of one without */
 #define _POSIX_C_SOURCE 200112L
 #define BENCH           "contact"
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
+#include "../examples/gxoverlap.h"
 #include "block.h"
 #include "clock.h"
 #include "csv.h"
@@ -259,12 +263,35 @@ static void collide(uint32_t cells, double friction) {
     gx_body_destroy(body);
 }
 
+/* How deep pieces are in each other, in themselves or below the ground */
+static double overlap_of(gx_body *body, double ground, double tolerance) {
+    gx_skin skin;
+    gxoverlap_surface surface;
+    gxoverlap_forest forest;
+    double *positions, depth;
+    memset(&skin, 0, sizeof skin);
+    expect(gx_body_skin(body, NULL, &skin, NULL) == GX_OK, "no skin");
+    positions = (double *)malloc(3 * skin.vertex_count * sizeof *positions);
+    expect(positions != NULL && gx_body_skin_positions(body, positions, NULL) == GX_OK, "no positions");
+    surface.positions = positions;
+    surface.triangles = skin.triangles;
+    surface.pieces = skin.triangle_fragment;
+    surface.triangle_count = skin.triangle_count;
+    expect(gxoverlap_make(&forest, &surface), "no memory");
+    depth = fmax(gxoverlap_of_pieces(&forest, tolerance).depth, gxoverlap_of_itself(&forest).depth);
+    depth = fmax(depth, gxoverlap_in_convex(&surface, gxoverlap_from_ground, &ground, tolerance).depth);
+    gxoverlap_release(&forest);
+    free(positions);
+    return depth;
+}
+
 static void pile(uint32_t cells, const uint32_t parts[3], double time) {
-    const gx_collider plane = ground_at(-0.05, 0.4);
-    gx_body *body = make_body(cells, 1, 1e5, 0.3);
+    const double height = -0.05;
+    const gx_collider plane = ground_at(height, 0.4);
+    gx_body *body = make_body(cells, 1, 1e6, 0.3);
     gx_step_desc step = falling(1 / 60.0);
     gx_step_report report;
-    double deepest, force, spent = processor_seconds(NULL), iterations = 0;
+    double deepest, force, flight = 0, spent = 0, iterations = 0;
     char asleep[32] = "";
     const uint32_t steps = (uint32_t)(60 * time);
     uint32_t i;
@@ -277,19 +304,23 @@ static void pile(uint32_t cells, const uint32_t parts[3], double time) {
     step.sleep_speed = 1e-2;
     step.sleep_time = 0.5;
     for (i = 0; i < steps; i++) {
+        const double start = processor_seconds(NULL);
         take(body, &step, &report);
+        spent += 1e3 * (processor_seconds(NULL) - start) / steps;
         iterations += report.cg_iterations;
+        if (i % 10 == 0 && i < steps / 2) flight = fmax(flight, overlap_of(body, height, 0.01 / cells));
         if (report.stop != GXS_STOP_ASLEEP)
             asleep[0] = 0;
         else if (asleep[0] == 0)
             snprintf(asleep, sizeof asleep, "%.2f", i / 60.0);
     }
-    spent = 1e3 * (processor_seconds(NULL) - spent) / steps;
     count = contacts_of(body, &deepest, &force);
+    deepest = overlap_of(body, height, 1e-3 / cells);
     view = view_of(body);
     csv_row("pile,%u,%lu,%lu,%.5f,0.05,%.3f,,,,%.1f,,,%s", parts[0] * parts[1] * parts[2],
             3 * (unsigned long)view.copy_count, (unsigned long)count, deepest * cells, spent, iterations / steps,
             asleep);
+    tell("flight", parts[0] * parts[1] * parts[2], flight * cells, 0.3);
     fprintf(stderr, "%-8s %8u %14.6g (0.05) h deep, asleep %s s, %.1f ms a step\n", "pile",
             parts[0] * parts[1] * parts[2], deepest * cells, asleep, spent);
     gx_body_destroy(body);

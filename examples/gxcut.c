@@ -20,6 +20,7 @@
 #endif
 #include "../gxfem.h"
 #include "gxfailure.h"
+#include "gxoverlap.h"
 
 #ifdef _WIN32
 #include <io.h>
@@ -1036,61 +1037,6 @@ static int simulate(run *r) {
 
 /* ----------------------------------------------------------------------------------------------- >>depth */
 
-/* The squared distance of p from a segment */
-static double from_segment(const double *p, const double *a, const double *b) {
-    double along = 0, length = 0, square = 0, share;
-    int k;
-    for (k = 0; k < 3; k++) {
-        along += (p[k] - a[k]) * (b[k] - a[k]);
-        length += (b[k] - a[k]) * (b[k] - a[k]);
-    }
-    share = length > 0 ? fmin(fmax(along / length, 0.0), 1.0) : 0.0;
-    for (k = 0; k < 3; k++) {
-        const double d = p[k] - a[k] - share * (b[k] - a[k]);
-        square += d * d;
-    }
-    return square;
-}
-
-/* The squared distance of p from a triangle: from its plane if the foot is inside, else from an edge */
-static double from_triangle(const double *p, const double *const corner[3]) {
-    double n[3], square, height = 0, best = HUGE_VAL;
-    int i, k, inside = 1;
-    for (k = 0; k < 3; k++) {
-        const int x = (k + 1) % 3, y = (k + 2) % 3;
-        n[k] = (corner[1][x] - corner[0][x]) * (corner[2][y] - corner[0][y]) -
-               (corner[1][y] - corner[0][y]) * (corner[2][x] - corner[0][x]);
-    }
-    square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
-    for (k = 0; k < 3; k++) height += n[k] * (p[k] - corner[0][k]);
-    for (i = 0; i < 3; i++) {
-        const double *a = corner[i], *b = corner[(i + 1) % 3];
-        double side = 0;
-        for (k = 0; k < 3; k++) {
-            const int x = (k + 1) % 3, y = (k + 2) % 3;
-            side += n[k] * ((b[x] - a[x]) * (p[y] - a[y]) - (b[y] - a[y]) * (p[x] - a[x]));
-        }
-        inside &= side >= 0;
-        best = fmin(best, from_segment(p, a, b));
-    }
-    return inside && square > 0 ? fmin(best, height * height / square) : best;
-}
-
-/* How far a point is in a fragment that it is inside of, m: the way to its skin */
-static double depth_in(const run *r, uint32_t fragment, const double *p) {
-    double best = HUGE_VAL;
-    size_t t;
-    for (t = 0; t < r->skin.triangle_count; t++) {
-        const uint32_t *v = r->skin.triangles + 3 * t;
-        const double *corner[3];
-        int i;
-        if (r->skin.triangle_fragment[t] != fragment) continue;
-        for (i = 0; i < 3; i++) corner[i] = r->skin_positions + 3 * (size_t)v[i];
-        best = fmin(best, from_triangle(p, corner));
-    }
-    return sqrt(best);
-}
-
 static double mean_edge(const run *r) {
     double sum = 0;
     size_t e;
@@ -1107,40 +1053,55 @@ static double mean_edge(const run *r) {
     return r->view.element_count ? sum / (6.0 * (double)r->view.element_count) : 1.0;
 }
 
-/* How far a vertex of the skin is in other fragments or below the ground at most, m. It asks where cells are, nothing
-   that contact knows. Returns below 0 where the body cannot tell. */
-static double deepest_vertex(run *r) {
-    enum { MOST = 64 };
-    double deepest = 0;
-    size_t t, i, h, count;
-    gx_hit hits[MOST];
-    uint32_t *own;
+/* The collider as gxoverlap.h has it: a ball and a capsule are a point and a segment with a radius. */
+static gxoverlap_round round_of(const gx_collider *collider) {
+    gxoverlap_round round;
+    memset(&round, 0, sizeof round);
+    memcpy(round.pose, collider->pose, sizeof round.pose);
+    if (collider->kind == GX_COLLIDER_BOX)
+        memcpy(round.half, collider->size, sizeof round.half);
+    else
+        round.radius = collider->size[0];
+    if (collider->kind == GX_COLLIDER_CAPSULE) round.half[2] = collider->size[1];
+    return round;
+}
+
+/* How deep the skin of a piece is in other pieces, in its own, below the ground or in a collider at most, m, within a
+   tolerance. It is measured on what is drawn. Returns below 0 where there is no memory. */
+static double deepest(run *r, double tolerance) {
+    gxoverlap_surface surface;
+    gxoverlap_forest forest;
+    double most = -1.0;
+    size_t i;
     if (!r->set.frames) return 0.0;
     if (look(r) != EXIT_DONE) return -1.0; /* the skin may be one of another shading by now */
-    own = (uint32_t *)gxio_array(r->skin.vertex_count, sizeof *own);
-    if (!own) return -1.0;
-    if (gx_body_skin_positions(r->body, r->skin_positions, NULL) != GX_OK) deepest = -1.0;
-    for (t = 0; t < 3 * r->skin.triangle_count; t++) own[r->skin.triangles[t]] = r->skin.triangle_fragment[t / 3];
-    for (i = 0; i < r->skin.vertex_count && deepest >= 0; i++) {
-        const double *x = r->skin_positions + 3 * i;
-        if (r->set.grounded) deepest = fmax(deepest, r->set.ground - x[2]);
-        if (gx_body_locate_all(r->body, x, hits, MOST, &count, NULL) != GX_OK) continue; /* more than MOST pieces */
-        for (h = 0; h < count; h++)
-            if (hits[h].fragment != own[i]) deepest = fmax(deepest, depth_in(r, hits[h].fragment, x));
+    if (gx_body_skin_positions(r->body, r->skin_positions, NULL) != GX_OK) return -1.0;
+    surface.positions = r->skin_positions;
+    surface.triangles = r->skin.triangles;
+    surface.pieces = r->skin.triangle_fragment;
+    surface.triangle_count = r->skin.triangle_count;
+    if (gxoverlap_make(&forest, &surface)) {
+        most = fmax(gxoverlap_of_pieces(&forest, tolerance).depth, gxoverlap_of_itself(&forest).depth);
+        gxoverlap_release(&forest);
     }
-    free(own);
-    return deepest;
+    for (i = 0; i < r->set.collider_count && most >= 0; i++) {
+        const gxoverlap_round round = round_of(&r->set.colliders[i]);
+        const int plane = r->set.colliders[i].kind == GX_COLLIDER_PLANE;
+        most = fmax(most, plane ? gxoverlap_in_convex(&surface, gxoverlap_from_ground, &r->set.ground, tolerance).depth
+                                : gxoverlap_in_convex(&surface, gxoverlap_from_round, &round, tolerance).depth);
+    }
+    return most;
 }
 
 /* ---------------------------------------------------------------------------------------------- >>report */
 
 static void print_contact(FILE *stream, run *r) {
-    const double deepest = deepest_vertex(r);
+    const double edge = mean_edge(r), depth = deepest(r, 1e-3 * edge);
     gx_motion *motions = (gx_motion *)gxio_array(r->view.fragment_count, sizeof *motions);
     size_t i, count = 0;
     (void)gx_body_contacts(r->body, NULL, 0, &count, NULL);
     fprintf(stream, "  \"contacts\": %lu,\n  \"max_penetration\": %.17g,\n  \"energy\": %.17g,\n  \"asleep\": %s,\n",
-            (unsigned long)count, deepest / mean_edge(r), r->stepped.energy,
+            (unsigned long)count, depth / edge, r->stepped.energy,
             r->stepped.stop == GXS_STOP_ASLEEP ? "true" : "false");
     fputs("  \"fragment_centers\": [", stream);
     if (motions && gx_body_motion(r->body, motions, r->view.fragment_count, NULL) == GX_OK)

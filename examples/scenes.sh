@@ -85,7 +85,8 @@ gallery() {
     echo "own too: sheets that advance strip by strip, strokes of a blade, times, files, checks; \`slab.h\`: brute-force integration,"
     echo "locking; \`cheese.h\`: surfaces."
     echo "\`gxcut.c\` and \`gxboolean.c\` are the command-line programs, \`gxio.h\` their readers and writers, \`gxshape.h\` their shapes,"
-    echo "\`gxfailure.h\` their words for a refusal, \`gxjson.h\` and \`gxrunner.h\` what a benchmark asks of \`gxboolean\`."
+    echo "\`gxoverlap.h\` how deep pieces are in each other, \`gxfailure.h\` their words for a refusal,"
+    echo "\`gxjson.h\` and \`gxrunner.h\` what a benchmark asks of \`gxboolean\`."
     echo
     echo "## Times"
     echo
