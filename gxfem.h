@@ -59,8 +59,8 @@
  *     what acts on it:           >>attached >>supports >>model
  *     the skin:                  >>corners >>vertices >>faces >>skinning
  *     points and rays:           >>tree >>locate >>nearest >>hits >>rays
- *     a step, with contact:      >>touch >>colliders >>meeting >>seeking >>pressing >>telling
- *                                >>step
+ *     a step, with contact:      >>touch >>colliders >>meeting >>crowding >>seeking >>pressing
+ *                                >>telling >>step
  *     a blade in space:          >>layers >>edges >>relations >>fronts >>glances >>strokes >>ways >>blade
  *                                >>contacts >>carve
  *     beginning, end, bytes:     >>grid >>create >>hashes >>stream >>scabbard >>save
@@ -12954,9 +12954,9 @@ static void gxp_try_facet(const gx_body *body, const gxp_touch_surface *s, doubl
     memcpy(best->normal, pair.normal, sizeof best->normal);
 }
 
-/* >>seeking: the pairs of a step ----------------------------------------------------------------------------------- */
-/* In: the surface, where its material is and how fast. Out: the pairs that a step gets beside the caller's. Touches
-   what a step with contact works with. */
+/* >>crowding: which boxes of facets samples may meet --------------------------------------------------------------- */
+/* In: the surface, where its material is and how fast. Out: boxes and leaves fitted to the facets; those that a crowd
+   of samples may meet. Touches what a step with contact works with. */
 
 /* A tree of boxes over the facets, in their order. Samples that are near each other and face alike go through it
    together: down to what all of many may meet, from there to what a few may meet, then each for itself, with the facet
@@ -13198,6 +13198,10 @@ static gx_result gxp_narrow_boxes(gx_body *body, const gxp_touch_crowd *crowd, c
     }
     return result;
 }
+
+/* >>seeking: the pairs of a step ----------------------------------------------------------------------------------- */
+/* In: the surface, where its material is and how fast. Out: the pairs that a step gets beside the caller's. Touches
+   what a step with contact works with. */
 
 /* A pair of a sample that touches nothing so far */
 static gxp_touch_pair gxp_no_pair(uint32_t sample) {
