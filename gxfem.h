@@ -59,7 +59,7 @@
  *     what acts on it:           >>attached >>supports >>model
  *     the skin:                  >>corners >>vertices >>faces >>skinning
  *     points and rays:           >>tree >>locate >>nearest >>hits >>rays
- *     a step, with contact:      >>touch >>colliders >>meeting >>seeking >>pressing >>telling
+ *     a step, with contact:      >>touch >>colliders >>meeting >>seeking >>pairing >>pressing >>telling
  *                                >>step
  *     a blade in space:          >>layers >>edges >>relations >>fronts >>glances >>strokes >>ways >>blade
  *                                >>contacts >>carve
@@ -12876,9 +12876,9 @@ static void gxp_try_facet(const gx_body *body, const gxp_touch_surface *s, doubl
     memcpy(best->normal, pair.normal, sizeof best->normal);
 }
 
-/* >>seeking: the pairs of a step ----------------------------------------------------------------------------------- */
-/* In: the surface, where its material is and how fast. Out: the pairs that a step gets beside the caller's. Touches
-   what a step with contact works with. */
+/* >>seeking: the facets that samples meet -------------------------------------------------------------------------- */
+/* In: the surface, where its material is and how fast. Out: for each sample the facet that it meets within a step.
+   Touches what a step with contact works with. */
 
 /* A tree of boxes over the facets, in their order. Samples that are near each other and face alike go through it
    together: down to what all of many may meet, from there to what a few may meet, then each for itself, with the facet
@@ -13369,6 +13369,10 @@ static gx_result gxp_seek_facets(gx_body *body, const gxp_touch_surface *s, doub
     }
     return result;
 }
+
+/* >>pairing: pairs with what samples meet -------------------------------------------------------------------------- */
+/* In: the facets that samples meet, samples beside colliders, states. Out: the pairs of a step, each with what its
+   sample pressed with before. Touches what a step with contact works with. */
 
 /* The vertex by whose element a sample is measured */
 static const gxp_touch_vertex *gxp_sample_vertex(const gxp_touch_surface *s, uint32_t sample) {
