@@ -59,8 +59,8 @@
  *     what acts on it:           >>attached >>supports >>model
  *     the skin:                  >>corners >>vertices >>faces >>skinning
  *     points and rays:           >>tree >>locate >>nearest >>hits >>rays
- *     a step, with contact:      >>touch >>colliders >>meeting >>crowding >>seeking >>pressing
- *                                >>telling >>step
+ *     a step, with contact:      >>touch >>colliders >>meeting >>crowding >>seeking >>pairing
+ *                                >>pressing >>telling >>step
  *     a blade in space:          >>layers >>edges >>relations >>fronts >>glances >>strokes >>ways >>blade
  *                                >>contacts >>carve
  *     beginning, end, bytes:     >>grid >>create >>hashes >>stream >>scabbard >>save
@@ -13199,9 +13199,9 @@ static gx_result gxp_narrow_boxes(gx_body *body, const gxp_touch_crowd *crowd, c
     return result;
 }
 
-/* >>seeking: the pairs of a step ----------------------------------------------------------------------------------- */
-/* In: the surface, where its material is and how fast. Out: the pairs that a step gets beside the caller's. Touches
-   what a step with contact works with. */
+/* >>seeking: the facets that samples meet -------------------------------------------------------------------------- */
+/* In: crowds of samples, and the boxes that these may meet. Out: for each sample the facet that it meets within a step.
+   Touches what a step with contact works with. */
 
 /* A pair of a sample that touches nothing so far */
 static gxp_touch_pair gxp_no_pair(uint32_t sample) {
@@ -13451,6 +13451,10 @@ static gx_result gxp_seek_facets(gx_body *body, const gxp_touch_surface *s, doub
     }
     return result;
 }
+
+/* >>pairing: pairs with what samples meet -------------------------------------------------------------------------- */
+/* In: the facets that samples meet, samples beside colliders, states. Out: the pairs of a step, each with what its
+   sample pressed with before. Touches what a step with contact works with. */
 
 /* The vertex by whose element a sample is measured */
 static const gxp_touch_vertex *gxp_sample_vertex(const gxp_touch_surface *s, uint32_t sample) {
