@@ -16949,15 +16949,18 @@ static void gxp_find_box(const gx_body *body, gxp_bounds *box) {
         }
 }
 
-static void gxp_middle_of(const gxp_bounds *box, double middle[3]) {
+static void gxp_find_middle(const gx_body *body, double middle[3]) {
+    gxp_bounds box;
     int k;
-    for (k = 0; k < 3; k++) middle[k] = box->low[k] > box->high[k] ? 0 : 0.5 * box->low[k] + 0.5 * box->high[k];
+    gxp_find_box(body, &box);
+    for (k = 0; k < 3; k++) middle[k] = box.low[k] > box.high[k] ? 0 : 0.5 * box.low[k] + 0.5 * box.high[k];
 }
 
 /* No layer is near: keeps the place on the edge that is nearest to the body's box, and the material next to it. */
-static gx_result gxp_keep_far_place(gx_blade *blade, const double *edge, uint32_t count, const gxp_bounds *box) {
+static gx_result gxp_keep_far_place(gx_blade *blade, const double *edge, uint32_t count) {
     static const double origin[3] = {0, 0, 0};
     gx_body *body = blade->body;
+    gxp_bounds box;
     const uint32_t parts = count < 32 ? 32 / (count - 1) : 1;
     double least = HUGE_VAL, corners[4][3];
     gxp_front_vertex v;
@@ -16965,10 +16968,11 @@ static gx_result gxp_keep_far_place(gx_blade *blade, const double *edge, uint32_
     uint32_t i;
     gx_result result;
     memset(&v, 0, sizeof v);
+    gxp_find_box(body, &box);
     for (i = 0; i <= parts * (count - 1); i++) {
         double x[3], square;
         gxp_edge_position(edge, count, (double)i / parts, x);
-        square = gxp_square_to_box(x, box->low, box->high);
+        square = gxp_square_to_box(x, box.low, box.high);
         if (square >= least) continue;
         least = square;
         v.along = (double)i / parts;
@@ -16994,17 +16998,15 @@ static gx_result gxp_keep_far_place(gx_blade *blade, const double *edge, uint32_
 /* Notes which cells belong to which layer, and where the edge is. */
 static gx_result gxp_keep_members(gx_blade *blade, const double *edge, uint32_t count) {
     gxp_blade_state *then = &blade->then;
-    gxp_bounds box;
     uint32_t i;
     gx_result result = GX_OK;
     then->members.count = then->edge.count = 0;
     then->slot_count = blade->body->slots.count;
-    memset(then->middle, 0, sizeof then->middle);
-    if (blade->near.layer_count == 0) {
-        gxp_find_box(blade->body, &box);
-        gxp_middle_of(&box, then->middle);
-        result = gxp_keep_far_place(blade, edge, count, &box);
-    }
+    if (blade->near.layer_count == 0) result = gxp_keep_far_place(blade, edge, count);
+    if (blade->near.layer_count == 0)
+        gxp_find_middle(blade->body, then->middle);
+    else
+        memset(then->middle, 0, sizeof then->middle);
     for (i = 0; i < blade->near.count && result == GX_OK; i++)
         result = gxp_push_key(blade->body, &then->members, blade->body->cells.slot[blade->near.cells[i].cell],
                               blade->near.cells[i].layer);
@@ -17093,15 +17095,11 @@ static gx_result gxp_list_places(gx_blade *blade) {
 static void gxp_carry_far_points(gx_blade *blade) {
     gxp_front_list *places = &blade->places;
     uint32_t i, near = GXP_NONE;
-    gxp_bounds box;
     double way[3];
     int k;
     for (i = 0; i < places->count && near == GXP_NONE; i++)
         if (places->data[i].distance < HUGE_VAL) near = i;
-    if (near == GXP_NONE) {
-        gxp_find_box(blade->body, &box);
-        gxp_middle_of(&box, way);
-    }
+    if (near == GXP_NONE) gxp_find_middle(blade->body, way);
     for (k = 0; k < 3; k++) way[k] = near == GXP_NONE ? way[k] - blade->now.middle[k] : places->data[near].rest[k];
     for (i = 0; i < places->count; i++)
         if (places->data[i].distance < HUGE_VAL)
@@ -17190,16 +17188,14 @@ static double gxp_most_steps(const gx_blade *blade) {
 static gx_result gxp_plan_way(gx_blade *blade, const double *edge, uint32_t count, uint32_t *steps) {
     const double *before = blade->now.edge.data, square = blade->step * blade->step;
     double most = 0;
-    gxp_bounds box; /* of the body's cells, or a little more: no pass over the copies */
+    gxp_bounds box;
     gx_result result;
-    int k;
     *steps = 1;
     if (blade->now.edge.count == 0) return gxp_go_straight(blade, edge, edge, count);
     if (gxp_measure_edge(blade, edge, count) <= blade->step) return gxp_go_straight(blade, before, edge, count);
     result = gxp_measure_way(blade, before, edge, count, NULL, &most);
     if (result == GX_OK && most > square) {
-        box = blade->body->tree.boxes[0];
-        for (k = 0; k < 3; k++) box.low[k] -= blade->slack, box.high[k] += blade->slack;
+        gxp_find_box(blade->body, &box);
         result = gxp_measure_way(blade, before, edge, count, &box, &most);
     }
     if (result == GX_OK && most > square) {
