@@ -131,8 +131,8 @@ static int trainer_stroke_now(const trainer *on, double time) {
 static void trainer_call_witnesses(scene *s, trainer *on) {
     const int n = s->small ? 14 : 28;
     const double spacing = 0.28 / n;
-    double *points = (double *)scene_array(s, (size_t)n * n * n, 3 * sizeof(double));
-    gx_hit *hits = (gx_hit *)scene_array(s, (size_t)n * n * n, sizeof *hits);
+    double *points = (double *)scene_array(s, (size_t)(n * n * n), 3 * sizeof(double));
+    gx_hit *hits = (gx_hit *)scene_array(s, (size_t)(n * n * n), sizeof *hits);
     size_t count = 0, i;
     int x, y, z;
     for (x = 0; x < n; x++)
