@@ -8937,11 +8937,11 @@ static gx_result gxp_attach(gx_body *body, const gx_step_desc *desc, gxs_step_de
    is weak if every part around it has a share below follow_below: so little moves it that nothing else would keep it
    from running away. An affine copy has four times as many unknowns, for which that is not enough beside larger parts:
    a sharp edge ends in parts of all sizes. It is weak, too, if every part around it has less than bend_below of the
-   largest one near it, that is, around the copies of the cells around it. So all copies of a thin sheet stay free. A
-   weak copy takes the increment of the field of a strong cell near it, that is, one without weak copies. A
-   fragment without a strong cell is thin everywhere. Its copies are then weak by comparison with its fullest part; if
-   that part has a share below speck_below, or no cell reaches speck_reach, the fragment is a speck and moves as a
-   point. All work is around thin elements, which are those with a part of so small a share. */
+   largest one near it, that is, around the copies of the cells around it. A weak copy takes the increment of the field
+   of a strong cell near it, that is, one without weak copies. A fragment without a strong cell is thin everywhere. Its
+   copies are then weak by comparison with its fullest part; if that part has a share below speck_below, or no cell
+   reaches speck_reach, the fragment is a speck and moves as a point. All work is around thin elements, which are those
+   with a part of so small a share. */
 
 enum { GXP_FREE, GXP_FOLLOWS, GXP_FOLLOWS_POINT };
 

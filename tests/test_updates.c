@@ -905,7 +905,8 @@ START_TEST(small_cuts_of_sheets_keep_coarse_numbers) {
         size_t bytes;
         double *block;
         int collapsed;
-        system->coarse.life = 1000; /* iterations do not end it */
+        system->coarse.worn = 0; /* whatever they have served */
+        system->coarse.life = 1000;
         ck_assert_uint_eq(system->multigrid.level_count, 2);
         cut_by(body, &w, c, 1);
         advance(body, &step, 1);
