@@ -12965,8 +12965,9 @@ static void gxp_try_facet(const gx_body *body, const gxp_touch_surface *s, doubl
 
 /* Several of four numbers at a time: gcc does not make vectors of loops that compare. GXP_EACH_LANE begins a loop over
    them; GXP_LANE: those at work, of four doubles; GXP_FLAGS: likewise, of four integers, what GXP_ABOVE, with | & ~,
-   has told: 0 if it is not so. Vectors longer than the machine's would be compared number by number. */
-#if !defined(GXFEM_SCALAR) && !defined(GXFEM_INTRINSICS) && (defined(__SSE2__) || defined(__aarch64__)) &&             \
+   has told: 0 if it is not so. Vectors longer than the machine's would be compared number by number. x87 arithmetic
+   has none. */
+#if !defined(GXFEM_SCALAR) && !defined(GXFEM_INTRINSICS) && (defined(__SSE2_MATH__) || defined(__aarch64__)) &&        \
     (defined(__clang__) || defined(__GNUC__))
 #ifdef __AVX__
 #define GXP_LANES 4u
