@@ -12985,7 +12985,7 @@ typedef __attribute__((vector_size(8 * GXP_LANES), aligned(8), may_alias)) int64
 typedef double gxp_lane;
 #define GXP_LANE(x)      ((x)[j])
 #define GXP_FLAGS(x)     ((x)[j])
-#define GXP_ABOVE(a, b)  ((int64_t)((a) > (b)))
+#define GXP_ABOVE(a, b)  (-(int64_t)((a) > (b)))
 #define GXP_LANE_SIZE(a) fabs(a)
 #endif
 #define GXP_EACH_LANE(j) for (j = 0; j < 4; j += GXP_LANES)
