@@ -2245,25 +2245,11 @@ static size_t gxp_row_size(uint32_t table, uint32_t use) {
 /* >>basics: sorting, hashing, sets, vectors ------------------------------------------------------------------------ */
 /* Small functions that know nothing of a body. They change nothing but what they are given. */
 
-/* Sorts ascending, by insertion. */
-static void gxp_sort_few(uint32_t *w, uint32_t count) {
-    uint32_t i, j;
-    for (i = 1; i < count; i++) {
-        const uint32_t k = w[i];
-        for (j = i; j > 0 && w[j - 1] > k; j--) w[j] = w[j - 1];
-        w[j] = k;
-    }
-}
-
 /* Sorts ascending by the bits from `bit` down; words without the bit come first [radix exchange, Hildebrandt and Isbitz
    1959]. */
 static void gxp_sort_by_bits(uint32_t *w, uint32_t count, uint32_t bit) {
     while (count > 1 && bit != 0) {
         uint32_t i = 0, j = count;
-        if (count <= 16) {
-            gxp_sort_few(w, count);
-            return;
-        }
         while (i < j) {
             if (!(w[i] & bit)) {
                 i++;
@@ -9004,25 +8990,28 @@ static int gxp_is_weak(const gx_body *body, uint32_t copy, double share) {
     return 1;
 }
 
-/* The largest share of a part around the copies of the cells around the copy */
-static double gxp_share_near(const gx_body *body, uint32_t copy) {
+/* The largest share of a part around the copy */
+static double gxp_fullest_around(const gx_body *body, uint32_t copy) {
     gxp_around around = gxp_around_copy(body, copy);
     double most = 0;
-    int k;
-    while (gxp_next_around(body, &around))
-        for (k = 0; k < 4; k++) {
-            gxp_around beside = gxp_around_copy(body, body->cells.data[around.cell].copies[k]);
-            while (gxp_next_around(body, &beside)) most = fmax(most, gxp_part_share(body, beside.cell));
-        }
+    while (gxp_next_around(body, &around)) most = fmax(most, gxp_part_share(body, around.cell));
     return most;
 }
 
 /* Is the copy held by next to nothing, whatever the rest of its fragment is? */
 static int gxp_is_stray(const gx_body *body, uint32_t copy) {
-    const double bend_below = body->copies.bends && body->copies.affine[copy] ? body->config.bend_below : 0;
-    return gxp_is_weak(body, copy, body->config.follow_below) ||
-           (bend_below > 0 && gxp_is_weak(body, copy, bend_below) &&
-            gxp_is_weak(body, copy, bend_below * gxp_share_near(body, copy)));
+    const double below = body->config.bend_below;
+    gxp_around around;
+    double own;
+    int k;
+    if (gxp_is_weak(body, copy, body->config.follow_below)) return 1;
+    if (!body->copies.bends || !body->copies.affine[copy] || !gxp_is_weak(body, copy, below)) return 0;
+    own = gxp_fullest_around(body, copy);
+    around = gxp_around_copy(body, copy);
+    while (gxp_next_around(body, &around))
+        for (k = 0; k < 4; k++)
+            if (own < below * gxp_fullest_around(body, body->cells.data[around.cell].copies[k])) return 1;
+    return 0;
 }
 
 static int gxp_is_strong(const gx_body *body, const gxp_supports *supports, uint32_t cell) {
@@ -12760,13 +12749,12 @@ static int gxp_has_changed(const gxp_touch *t, uint32_t id) {
 
 /* A cosine: facets that face a vertex less do not meet it. */
 #define GXP_TOUCH_FACING 0.5
-/* In sizes of an element: how far beside a facet a vertex may be, with a share of its gap, and one that pressed on a
-   facet before: else those at the rim of a face would be lost and found by turns, and nothing there comes to rest. From
-   how far a sample of a facet takes the state of another one; how far behind a facet at rest is a piece's own
-   thickness */
-#define GXP_TOUCH_BESIDE 0.002
 /* Of a facet: the height as a share of the longest side below which rounding makes its normal */
-#define GXP_TOUCH_THIN   1e-7
+#define GXP_TOUCH_THIN 1e-7
+/* In sizes of an element: how far beside a facet a vertex may be, and one that pressed on a facet before, else those at
+   the rim of a face would be lost and found by turns; with a share of its gap. From how far a sample of a facet takes
+   the state of another one; how far behind a facet at rest is a piece's own thickness */
+#define GXP_TOUCH_BESIDE 0.002
 #define GXP_TOUCH_HELD   0.02
 #define GXP_TOUCH_SLANT  0.1
 #define GXP_TOUCH_SAME   0.25
@@ -13576,7 +13564,8 @@ static gx_result gxp_seek_colliders(gx_body *body, const gxp_touch_surface *s, d
     return result == GX_OK ? gxp_wake_left(body, s, sample, first, failure) : result;
 }
 
-/* Notes which samples pressed on a facet at the end of the last step. One of which that has changed may meet others. */
+/* Notes which samples pressed on a facet at the end of the last step. One that begins to, or no longer does, is
+   stirred: it may meet another facet, though it rests. */
 static void gxp_mark_held(gxp_touch *t, gxp_touch_surface *s) {
     enum { WAS = 2 };
     uint32_t i;
