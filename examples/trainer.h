@@ -83,7 +83,8 @@ typedef struct trainer {
 
 /* ------------------------------------------------------------------------------------------- >>strokes */
 
-static void trainer_set_stroke(trainer *on, int which, double begin, double end, double x, double to_x, double to_y) {
+static inline void trainer_set_stroke(trainer *on, int which, double begin, double end, double x, double to_x,
+                                      double to_y) {
     trainer_stroke *stroke = &on->strokes[which];
     stroke->begin = begin;
     stroke->end = end;
@@ -93,7 +94,7 @@ static void trainer_set_stroke(trainer *on, int which, double begin, double end,
     stroke->way[1] = to_y + 0.16;
 }
 
-static void trainer_plan(trainer *on, uint32_t turn) {
+static inline void trainer_plan(trainer *on, uint32_t turn) {
     const double right = 0.058 + 0.008 * turn, left = -0.094 - 0.004 * turn;
     trainer_set_stroke(on, LOBE, 1.0, 3.0, right, right, 0.16);
     trainer_set_stroke(on, WEDGE_LEFT, 3.4, 4.4, -0.022, 0.036, 0.03);
@@ -104,11 +105,11 @@ static void trainer_plan(trainer *on, uint32_t turn) {
 }
 
 /* How much of the time from `begin` to `end` is over */
-static double trainer_share(double time, double begin, double end) {
+static inline double trainer_share(double time, double begin, double end) {
     return fmin(1.0, fmax(0.0, (time - begin) / (end - begin)));
 }
 
-static void trainer_place_edge(const trainer_stroke *stroke, double time, double edge[3 * EDGE]) {
+static inline void trainer_place_edge(const trainer_stroke *stroke, double time, double edge[3 * EDGE]) {
     const double share = trainer_share(time, stroke->begin, stroke->end);
     int i, k;
     for (i = 0; i < EDGE; i++) {
@@ -118,7 +119,7 @@ static void trainer_place_edge(const trainer_stroke *stroke, double time, double
 }
 
 /* The stroke that is at work, STROKES: none. Its last frame is the first at its end or after. */
-static int trainer_stroke_now(const trainer *on, double time) {
+static inline int trainer_stroke_now(const trainer *on, double time) {
     int i;
     for (i = 0; i < STROKES; i++)
         if (time >= on->strokes[i].begin && time - 1.0 / on->rate < on->strokes[i].end) return i;
@@ -128,7 +129,7 @@ static int trainer_stroke_now(const trainer *on, double time) {
 /* ----------------------------------------------------------------------------------------- >>witnesses */
 
 /* A grid of points, those of them that are in the body */
-static void trainer_call_witnesses(scene *s, trainer *on) {
+static inline void trainer_call_witnesses(scene *s, trainer *on) {
     const int n = s->small ? 14 : 28;
     const double spacing = 0.28 / n;
     double *points = (double *)scene_array(s, (size_t)(n * n * n), 3 * sizeof(double));
@@ -155,7 +156,7 @@ static void trainer_call_witnesses(scene *s, trainer *on) {
     free(hits);
 }
 
-static void trainer_forget(trainer *on, int from, int to) {
+static inline void trainer_forget(trainer *on, int from, int to) {
     size_t i;
     int k;
     for (i = 0; i < on->witness_count; i++)
@@ -166,7 +167,7 @@ static void trainer_forget(trainer *on, int from, int to) {
 }
 
 /* Where each witness is beside the stroke at work, before the blade comes to its place of this frame */
-static void trainer_watch_stroke(scene *s, trainer *on, int which, double time) {
+static inline void trainer_watch_stroke(scene *s, trainer *on, int which, double time) {
     const trainer_stroke *stroke = &on->strokes[which];
     const double length = sqrt(stroke->way[0] * stroke->way[0] + stroke->way[1] * stroke->way[1]);
     const double come = length * trainer_share(time, stroke->begin, stroke->end);
@@ -188,14 +189,14 @@ static void trainer_watch_stroke(scene *s, trainer *on, int which, double time) 
 }
 
 /* What a witness should be part of, by the strokes so far. The tumour is a piece of its own once it is peeled. */
-static uint32_t trainer_label(const trainer *on, const trainer_witness *w) {
+static inline uint32_t trainer_label(const trainer *on, const trainer_witness *w) {
     if (on->peeled && w->material == TUMOUR) return 1u << 4;
     return (uint32_t)(w->off[LOBE] < 0.0) | (uint32_t)(w->off[WEDGE_LEFT] < 0.0 && w->off[WEDGE_RIGHT] > 0.0) << 1 |
            (uint32_t)(w->off[SLIP] > 0.0) << 2 | (uint32_t)(w->off[RIM] > 0.0) << 3;
 }
 
 /* Fragments and labels must name the same pieces: no fragment with two labels (a bridge), no label in two fragments. */
-static void trainer_judge(scene *s, trainer *on, size_t expected) {
+static inline void trainer_judge(scene *s, trainer *on, size_t expected) {
     enum { LABELS = 32 };
     const size_t pieces = scene_fragments_above(s, 1e-6);
     uint32_t *fragments = scene_copy_fragments(s), of_label[LABELS], i, f;
@@ -244,7 +245,7 @@ static const gx_anchor *trainer_nearest(const trainer *on, uint32_t label, const
 /* --------------------------------------------------------------------------------------------- >>tools */
 
 /* Ground, a ball that presses from above, a rod that strokes the front */
-static void trainer_move_tools(trainer *on, double time) {
+static inline void trainer_move_tools(trainer *on, double time) {
     static const uint32_t kinds[TOOLS] = {GX_COLLIDER_PLANE, GX_COLLIDER_SPHERE, GX_COLLIDER_CAPSULE};
     const double swing = 2.0 * 3.141592653589793 / 5.0, at[TOOLS][3] = {{0, 0, -0.2},
                                                                         {0.03, 0.0, 0.085 + 0.02 * cos(swing * time)},
@@ -269,7 +270,7 @@ static void trainer_move_tools(trainer *on, double time) {
 }
 
 /* Two boxes at the back, and a hook in the middle of the top, which is an anchor */
-static void trainer_hold(scene *s, trainer *on) {
+static inline void trainer_hold(scene *s, trainer *on) {
     const double left[2][3] = {{-0.2, 0.05, -0.2}, {0.01, 0.2, 0.2}},
                  right[2][3] = {{-0.01, 0.05, -0.2}, {0.2, 0.2, 0.2}};
     const double top[3] = {-0.035, 0.02, 0.03};
@@ -285,7 +286,7 @@ static void trainer_hold(scene *s, trainer *on) {
 }
 
 /* The back goes to and fro, the hook up and down. */
-static void trainer_breathe(trainer *on, double time) {
+static inline void trainer_breathe(trainer *on, double time) {
     const double breath = 0.004 * sin(2.0 * 3.141592653589793 * time / 4.0);
     int i, k;
     memset(on->poses, 0, sizeof on->poses);
@@ -296,7 +297,7 @@ static void trainer_breathe(trainer *on, double time) {
 }
 
 /* A drill, eight-sided, upright: it takes what it covers now. */
-static void trainer_drill(scene *s, trainer *on, double z) {
+static inline void trainer_drill(scene *s, trainer *on, double z) {
     enum { SIDES = 8 };
     double vertices[3 * (2 * SIDES + 2)];
     uint32_t triangles[3 * 4 * SIDES], *t = triangles, i;
@@ -330,7 +331,7 @@ static void trainer_drill(scene *s, trainer *on, double z) {
 /* A call on the twin: with scarce memory it fails some times first, and must leave the twin as it was. */
 typedef gx_result (*trainer_call)(gx_body *body, void *arguments);
 
-static gx_result trainer_try(scene *s, trainer *on, trainer_call call, void *arguments) {
+static inline gx_result trainer_try(scene *s, trainer *on, trainer_call call, void *arguments) {
     gx_body *twin = on->twin.body;
     const uint64_t before = gx_body_state_hash(twin);
     uint32_t after = 1 + on->twin.attempts % 7;
@@ -348,20 +349,20 @@ static gx_result trainer_try(scene *s, trainer *on, trainer_call call, void *arg
     return call(twin, arguments);
 }
 
-static gx_result trainer_twin_blade(gx_body *body, void *arguments) {
+static inline gx_result trainer_twin_blade(gx_body *body, void *arguments) {
     return gx_blade_move(gx_body_blade(body, 0), (const double *)arguments, EDGE, NULL, 0, NULL, NULL);
 }
 
-static gx_result trainer_twin_step(gx_body *body, void *arguments) {
+static inline gx_result trainer_twin_step(gx_body *body, void *arguments) {
     return gx_body_step(body, (const gx_step_desc *)arguments, NULL, NULL);
 }
 
-static gx_result trainer_twin_view(gx_body *body, void *arguments) {
+static inline gx_result trainer_twin_view(gx_body *body, void *arguments) {
     return gx_body_view(body, (gx_view *)arguments, NULL);
 }
 
 /* Poses that are none, and numbers that are none, must be refused by the name of the field. */
-static void trainer_provoke(trainer *on, const gx_step_desc *step) {
+static inline void trainer_provoke(trainer *on, const gx_step_desc *step) {
     const uint64_t before = gx_body_state_hash(on->twin.body);
     int i;
     for (i = 0; i < 4; i++) {
@@ -384,7 +385,7 @@ static void trainer_provoke(trainer *on, const gx_step_desc *step) {
 }
 
 /* The body as it is between two frames: loaded from its bytes, or cloned */
-static void trainer_make_twin(scene *s, trainer *on, int load, int scarce) {
+static inline void trainer_make_twin(scene *s, trainer *on, int load, int scarce) {
     on->twin.left = 3;
     on->twin.scarce = scarce;
     if (load) {
@@ -402,7 +403,7 @@ static void trainer_make_twin(scene *s, trainer *on, int load, int scarce) {
 }
 
 /* The twin does what the body has done in this frame. After its last frame both must be equal. */
-static void trainer_follow(scene *s, trainer *on, const double *edge) {
+static inline void trainer_follow(scene *s, trainer *on, const double *edge) {
     gx_step_desc step = s->step;
     gx_view view;
     if (on->twin.body == NULL) return;
@@ -422,8 +423,8 @@ static void trainer_follow(scene *s, trainer *on, const double *edge) {
 /* ---------------------------------------------------------------------------------------------- >>hand */
 
 /* Springs take hold of pieces by their labels, near points of the body at rest. */
-static void trainer_pull(scene *s, trainer *on, size_t count, const uint32_t labels[], const double at[][3],
-                         const double ways[][3], double begin, double end) {
+static inline void trainer_pull(scene *s, trainer *on, size_t count, const uint32_t labels[], const double at[][3],
+                                const double ways[][3], double begin, double end) {
     size_t i;
     for (i = 0; i < count; i++) {
         on->anchors[i] = *trainer_nearest(on, labels[i], at[i]);
@@ -439,13 +440,13 @@ static void trainer_pull(scene *s, trainer *on, size_t count, const uint32_t lab
 }
 
 /* Volumes of the tumour's piece: all of the tumour, and nothing else. Returns how far it is off, as a share. */
-static double trainer_tumour_error(const scene *s, const trainer *on) {
+static inline double trainer_tumour_error(const scene *s, const trainer *on) {
     double volume[MATERIALS];
     organ_measure(s, organ_fragment(s, TUMOUR), volume);
     return fabs(volume[TUMOUR] / on->whole[TUMOUR] - 1.0) + (volume[FLESH] + volume[VESSEL]) / on->whole[TUMOUR];
 }
 
-static void trainer_grasp(scene *s, trainer *on) {
+static inline void trainer_grasp(scene *s, trainer *on) {
     static const uint32_t labels[2] = {1u << 4, 1u << 1};
     static const double at[2][3] = {{-0.03, -0.052, 0.028}, {0.024, -0.03, 0.0}};
     static const double ways[2][3] = {{0.0, -0.12, 0.06}, {0.05, -0.14, 0.02}};
@@ -457,7 +458,7 @@ static void trainer_grasp(scene *s, trainer *on) {
     trainer_pull(s, on, 2, labels, at, ways, 5.8, 7.4);
 }
 
-static void trainer_grasp_flap(scene *s, trainer *on) {
+static inline void trainer_grasp_flap(scene *s, trainer *on) {
     static const uint32_t labels[1] = {0};
     static const double ways[1][3] = {{-0.05, -0.05, 0.03}};
     const double at[1][3] = {{on->strokes[FLAP].from[0] - 0.004, -0.035, 0.0}};
@@ -465,7 +466,7 @@ static void trainer_grasp_flap(scene *s, trainer *on) {
 }
 
 /* Puts the body back to a mark, which goes. */
-static void trainer_go_back(scene *s, trainer *on, gx_body **mark) {
+static inline void trainer_go_back(scene *s, trainer *on, gx_body **mark) {
     const uint64_t then = gx_body_state_hash(*mark);
     scene_must(s, gx_body_restore(s->body, *mark, &s->failure), "undo");
     on->undone_wrong += gx_body_state_hash(s->body) != then;
@@ -476,7 +477,7 @@ static void trainer_go_back(scene *s, trainer *on, gx_body **mark) {
     scene_look(s);
 }
 
-static void trainer_begin_round(scene *s, trainer *on) {
+static inline void trainer_begin_round(scene *s, trainer *on) {
     scene_must(s, gx_body_clone(s->body, &on->mark, &s->failure), "mark");
     trainer_plan(on, (uint32_t)(on->rounds % TURNS));
     trainer_forget(on, 0, STROKES);
@@ -484,7 +485,7 @@ static void trainer_begin_round(scene *s, trainer *on) {
     on->bored = 0.0;
 }
 
-static void trainer_end_round(scene *s, trainer *on) {
+static inline void trainer_end_round(scene *s, trainer *on) {
     double volume[MATERIALS], sum = 0.0, whole = 0.0;
     size_t i;
     int m;
@@ -503,12 +504,12 @@ static void trainer_end_round(scene *s, trainer *on) {
 }
 
 /* Is this the frame of a time of the round? */
-static int trainer_is_time(const trainer *on, uint32_t frame, double time) {
+static inline int trainer_is_time(const trainer *on, uint32_t frame, double time) {
     return frame == (uint32_t)(time * on->rate + 0.5);
 }
 
 /* What does not take time: marks, counts, springs, drill, twins */
-static void trainer_attend(scene *s, trainer *on, uint32_t frame) {
+static inline void trainer_attend(scene *s, trainer *on, uint32_t frame) {
     static const struct {
         double time;
         size_t pieces;
@@ -536,7 +537,7 @@ static void trainer_attend(scene *s, trainer *on, uint32_t frame) {
 }
 
 /* A frame: what holds, tools, springs, blade, step, a look at what there is */
-static void trainer_frame(scene *s, trainer *on) {
+static inline void trainer_frame(scene *s, trainer *on) {
     const uint32_t frame = s->frame % (SECONDS * on->rate);
     const double time = (double)frame / on->rate;
     double edge[3 * EDGE];
@@ -562,7 +563,7 @@ static void trainer_frame(scene *s, trainer *on) {
 }
 
 /* What a frame shows */
-static void trainer_watch(scene *s, trainer *on) {
+static inline void trainer_watch(scene *s, trainer *on) {
     const double now[PHASES] = {s->sum_frames - s->sum[SCENE_MODEL] - s->sum[SCENE_LINEARISE] - s->sum[SCENE_PREPARE] -
                                     s->sum[SCENE_SOLVE] - s->sum[SCENE_FORCES] - s->sum[SCENE_SKIN],
                                 s->sum[SCENE_MODEL],
@@ -586,7 +587,7 @@ static void trainer_watch(scene *s, trainer *on) {
 
 /* -------------------------------------------------------------------------------------------- >>report */
 
-static double trainer_mean_size(const scene *s) {
+static inline double trainer_mean_size(const scene *s) {
     return cbrt(6.0 * scene_mesh_volume(s) / (double)s->mesh.element_count);
 }
 
@@ -600,7 +601,7 @@ static const scene_desc trainer_scene = {
     .least_frames = 20 * SECONDS};
 
 /* The scene has been opened by trainer_scene; its hooks may have been set. */
-static void trainer_begin(scene *s, trainer *on) {
+static inline void trainer_begin(scene *s, trainer *on) {
     gxio_surface surfaces[MATERIALS];
     gx_contact_desc contact;
     int m;
@@ -629,12 +630,12 @@ static void trainer_begin(scene *s, trainer *on) {
     s->step.region_poses = on->poses;
 }
 
-static int trainer_compare(const void *a, const void *b) {
+static inline int trainer_compare(const void *a, const void *b) {
     const double x = *(const double *)a, y = *(const double *)b;
     return (x > y) - (x < y);
 }
 
-static void trainer_say_times(scene *s, trainer *on) {
+static inline void trainer_say_times(scene *s, trainer *on) {
     static const char *const names[PHASES] = {"blade and cuts", "model and contact", "solver", "skin", "frame"};
     const size_t n = s->frame;
     int i;
@@ -649,7 +650,7 @@ static void trainer_say_times(scene *s, trainer *on) {
               (unsigned long)(on->hash & 0xffffffffu));
 }
 
-static void trainer_report(scene *s, trainer *on) {
+static inline void trainer_report(scene *s, trainer *on) {
     scene_check(s, on->counts_wrong == 0 && on->bridged == 0 && on->split == 0,
                 "of %lu places judged, those in a piece that they were cut off from: %lu (0), in another piece than "
                 "their own: %lu (0); counts of pieces that are wrong: %lu (0)",
@@ -678,7 +679,7 @@ static void trainer_report(scene *s, trainer *on) {
     trainer_say_times(s, on);
 }
 
-static void trainer_end(trainer *on) {
+static inline void trainer_end(trainer *on) {
     int i;
     gx_body_destroy(on->mark);
     gx_body_destroy(on->slip);
