@@ -6525,19 +6525,23 @@ static void gxp_touch_copies(gx_body *body, const gxp_cell *cell) {
     }
 }
 
-/* Notes the elements of the model that have changed. Without memory for that, the model is made whole; so it is where
-   the body was saved, loaded, cloned or restored since its last step, so that both bodies then have the same model. */
+/* Room for gxp_note_changed, so that a cut that runs out of memory fails before it is made */
+static gx_result gxp_change_room(gx_body *body) {
+    return gxp_words_room(body, &body->model.changed,
+                          (size_t)body->undo.cells.rows.count + body->scratch.new_cells.count);
+}
+
+/* Notes the elements of the model that have changed. The model is made whole where the body was saved, loaded, cloned
+   or restored since its last step, so that both bodies then have the same model. */
 static void gxp_note_changed(gx_body *body) {
-    const gxp_words *changed = &body->undo.cells.rows, *made = &body->scratch.new_cells;
-    gx_result result = GX_OK;
+    const gxp_words *rows = &body->undo.cells.rows, *made = &body->scratch.new_cells;
+    gxp_words *changed = &body->model.changed;
     uint32_t i;
     if (body->model.resumed != 0) body->model.state = GXP_MODEL_STALE;
     if (body->model.state == GXP_MODEL_STALE) return;
-    for (i = 0; i < changed->count && result == GX_OK; i++)
-        result = gxp_push(body, &body->model.changed, body->cells.data[changed->data[i]].element);
-    for (i = 0; i < made->count && result == GX_OK; i++)
-        result = gxp_push(body, &body->model.changed, body->cells.data[made->data[i]].element);
-    body->model.state = result == GX_OK ? GXP_MODEL_CHANGED : GXP_MODEL_STALE;
+    for (i = 0; i < rows->count; i++) changed->data[changed->count++] = body->cells.data[rows->data[i]].element;
+    for (i = 0; i < made->count; i++) changed->data[changed->count++] = body->cells.data[made->data[i]].element;
+    body->model.state = GXP_MODEL_CHANGED;
 }
 
 static void gxp_commit(gxp_cut *cut) {
@@ -6618,6 +6622,7 @@ static gx_result gxp_run_cut(gxp_cut *cut, const gxp_not_meant *least, gx_failur
         gxp_rollback(cut);
     }
     body->scratch.glue.count = 0;
+    if (result == GX_OK) result = gxp_change_room(body);
     if (result == GX_OK) result = gxp_plan_settling(body, &settling);
     if (result != GX_OK) {
         gxp_rollback(cut);

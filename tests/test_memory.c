@@ -1101,23 +1101,25 @@ END_TEST
 /* ---- strokes ---- */
 
 /* A tower of cubes, each of five elements */
-enum { STOREYS = 7, TOWER_NODES = 4 * (STOREYS + 1) };
-static const mesh *tower(void) {
-    static double x[3 * TOWER_NODES];
-    static uint32_t elements[20 * STOREYS];
-    static const mesh m = {x, TOWER_NODES, elements, 5 * STOREYS};
+enum { STOREYS = 7, MOST_STOREYS = 60 };
+static const mesh *tower(uint32_t storeys) {
+    static double x[3 * 4 * (MOST_STOREYS + 1)];
+    static uint32_t elements[20 * MOST_STOREYS];
+    static mesh m = {x, 0, elements, 0};
     static const uint32_t mirror[8] = {1, 0, 3, 2, 5, 4, 7, 6};
     uint32_t i, k;
-    for (i = 0; i < TOWER_NODES; i++) {
+    for (i = 0; i < 4 * (storeys + 1); i++) {
         x[3 * i] = i % 2;
         x[3 * i + 1] = i / 2 % 2;
         x[3 * i + 2] = i / 4;
     }
-    for (i = 0; i < STOREYS; i++)
+    for (i = 0; i < storeys; i++)
         for (k = 0; k < 20; k++) {
             const uint32_t odd = k % 4 > 1 ? k ^ 1 : k; /* a mirrored element has two of its nodes exchanged */
             elements[20 * i + k] = 4 * i + (i % 2 ? mirror[five[odd]] : five[k]);
         }
+    m.node_count = 4 * ((size_t)storeys + 1);
+    m.element_count = 5 * (size_t)storeys;
     return &m;
 }
 
@@ -1127,6 +1129,37 @@ static gx_result cut_slit(gx_body *body) {
     gx_surface s = sheet(slit);
     return cut(body, &s, 1, 0, 0);
 }
+
+/* Steps after a cut that ran out of memory and was made again are those after a cut that did not. */
+START_TEST(steps_after_a_failed_cut) {
+    static const action in_motion[] = {hold, cut_slit, step, NULL};
+    memory m;
+    gx_body *body;
+    int failed;
+    uint64_t state;
+    size_t n;
+    mesh_of_bodies = tower(MOST_STOREYS);
+    m = plenty();
+    body = prepared(&m, in_motion);
+    ck_assert(cut_part(body) == GX_OK && step(body) == GX_OK && step(body) == GX_OK);
+    state = gx_body_state_hash(body);
+    gx_body_destroy(body);
+    for (n = 0, failed = 1; failed; n = next(n)) {
+        gx_result result;
+        body = prepared(&m, in_motion);
+        fail_from(&m, n, 0);
+        result = cut_part(body);
+        failed = m.failed;
+        never_fail(&m);
+        if (result != GX_OK) ck_assert_int_eq(cut_part(body), GX_OK);
+        ck_assert(step(body) == GX_OK && step(body) == GX_OK);
+        ck_assert_msg(gx_body_state_hash(body) == state, "allocation %zu: another motion", n);
+        gx_body_destroy(body);
+        check_empty(&m, "steps after a cut");
+    }
+    mesh_of_bodies = &cube_mesh;
+}
+END_TEST
 
 enum { MOST_MOVES = 12 };
 typedef struct stroke {
@@ -1197,7 +1230,7 @@ START_TEST(memory_of_strokes) {
     int k;
     memset(&desc, 0, sizeof desc);
     desc.min_advance = s->min_advance;
-    mesh_of_bodies = tower();
+    mesh_of_bodies = tower(STOREYS);
     body = prepared(&m, s->before);
     plain = prepared(&other, s->before);
     ck_assert_int_eq(gx_blade_create(body, &desc, &blade, NULL), GX_OK);
@@ -1286,6 +1319,7 @@ int main(void) {
     tcase_add_test(tests, cut_of_a_pinch);
     tcase_add_test(tests, followers);
     tcase_add_test(tests, step_after_a_failed_model);
+    tcase_add_test(tests, steps_after_a_failed_cut);
     tcase_add_loop_test(strokes_, memory_of_strokes, 0, STROKES);
     tcase_add_test(tests, solidifying);
     suite_add_tcase(suite, tests);
