@@ -1704,6 +1704,17 @@ START_TEST(pressed_slices_rest) {
 }
 END_TEST
 
+/* Two planes that cross in the middle of a plate, but for some noise */
+static void add_wedge(workload *w, uint64_t seed) {
+    int i;
+    random_seed(seed);
+    for (i = 0; i < 2; i++) {
+        const double p[3] = {2.5 + random_real(-0.3, 0.3), 2.5 + random_real(-0.3, 0.3), 1.5},
+                     n[3] = {1, (i ? 0.3 : -0.3) + random_real(-0.1, 0.1), random_real(-0.05, 0.05)};
+        add_plane(w, p, n, 10);
+    }
+}
+
 /* Two planes that cross leave wedges: at their sharp edges, parts of all sizes are affine. What next to nothing holds
    there follows the material, and is not flung away. */
 START_TEST(edges_of_wedges_stay) {
@@ -1714,12 +1725,7 @@ START_TEST(edges_of_wedges_stay) {
     double fastest = 0;
     size_t i;
     int round;
-    random_seed((uint64_t)_i);
-    for (i = 0; i < 2; i++) {
-        const double p[3] = {2.5 + random_real(-0.3, 0.3), 2.5 + random_real(-0.3, 0.3), 1.5},
-                     n[3] = {1, (i ? 0.3 : -0.3) + random_real(-0.1, 0.1), random_real(-0.05, 0.05)};
-        add_plane(&w, p, n, 10);
-    }
+    add_wedge(&w, (uint64_t)_i);
     ck_assert_int_eq(gx_body_hold(body, &back, 1, NULL), GX_OK);
     cut_by(body, &w, 0, 2);
     shake(body, 0.02);
@@ -1731,6 +1737,29 @@ START_TEST(edges_of_wedges_stay) {
     ck_assert_msg(fastest < 10, "%g m/s", fastest); /* a free fall makes 6.7, 14 to 48 where none follows */
     gx_body_destroy(body);
     wl_free(&w);
+}
+END_TEST
+
+/* A support that the caller gives decides alone what follows, at sharp edges of affine copies, too. */
+START_TEST(given_supports_decide_alone) {
+    size_t counts[2];
+    int given;
+    for (given = 0; given < 2; given++) {
+        workload w = grid(5, 5, 3, 5);
+        gx_body_desc desc = desc_of(&w);
+        gx_body *body = NULL;
+        gxs_model model;
+        add_wedge(&w, 1);
+        desc.affine_below = 1;
+        desc.support_below = given ? 1e-3 : 0; /* it is the default of the share that holds other copies */
+        ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
+        cut_by(body, &w, 0, 2);
+        ck_assert_int_eq(gx_body_model(body, &model, NULL), GX_OK);
+        counts[given] = model.constraint_count;
+        gx_body_destroy(body);
+        wl_free(&w);
+    }
+    ck_assert_msg(counts[1] > 0 && counts[1] < counts[0], "%zu of %zu follow", counts[1], counts[0]);
 }
 END_TEST
 
@@ -1923,6 +1952,7 @@ int main(void) {
     tcase_add_test(tcase, slices_lie_on_each_other);
     tcase_add_test(tcase, pressed_slices_rest);
     ADD_SOME(tcase, edges_of_wedges_stay, 12);
+    tcase_add_test(tcase, given_supports_decide_alone);
     tcase_add_loop_test(tcase, slices_fall_on_each_other, 0, 2);
     tcase_add_loop_test(tcase, anchored_pairs_know_their_sides, 0, 2);
     suite_add_tcase(suite, tcase);
