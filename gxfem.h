@@ -968,8 +968,8 @@ extern "C" {
 #define GXP_BEND_SUPPORT 6e-2
 
 /* Where support_below is 0, a fragment that reaches less far within every element moves as a point: its copies would
-   move ten times as far as its material. */
-#define GXP_SPECK_REACH 0.1
+   move four times as far as its material. */
+#define GXP_SPECK_REACH 0.25
 
 typedef struct gxp_words { /* growing array of indices */
     uint32_t *data, count, capacity;
@@ -8930,9 +8930,9 @@ static gx_result gxp_attach(gx_body *body, const gx_step_desc *desc, gxs_step_de
    a sharp edge ends in parts of all sizes. It is weak, too, if every part around it has less than bend_below of the
    largest one near it, that is, around the copies of the cells around it. A weak copy takes the increment of the field
    of a strong cell near it, that is, one without weak copies. A fragment without a strong cell is thin everywhere. Its
-   copies are then weak by comparison with its fullest part; if that part has a share below speck_below, or no cell
-   reaches speck_reach, the fragment is a speck and moves as a point. All work is around thin elements, which are those
-   with a part of so small a share. */
+   copies are then weak by comparison with its fullest part; if that part has a share below speck_below, it moves as a
+   point. So does a speck, a fragment none of whose cells reaches speck_reach. All work is around thin elements, which
+   are those with a part of so small a share, or a cell that reaches less far. */
 
 enum { GXP_FREE, GXP_FOLLOWS, GXP_FOLLOWS_POINT };
 
@@ -8957,12 +8957,30 @@ static double gxp_part_share(const gx_body *body, uint32_t cell) {
     return volume / gxp_element_volume(body, part->element);
 }
 
-/* Has the element a part with so small a share that it may make a copy weak? */
+/* Does the cell reach less far within its element than speck_reach? How far: the square root of the trace of its
+   covariance in barycentric coordinates over that of the element, which is 4 (1/10 - 1/16). The reach of a speck in a
+   corner is about its size; the reach of a layer, however thin, is about 1. */
+static int gxp_is_small(const gx_body *body, uint32_t cell) {
+    const double *m = body->cells.data[cell].mass;
+    double mass = 0, trace = 0;
+    int i;
+    for (i = 0; i < 4; i++) mass += gxp_mass_row(m, i);
+    for (i = 0; i < 4 && mass > 0; i++) {
+        const double mean = gxp_mass_row(m, i) / mass;
+        trace += m[gxp_mass_at[i][i]] / mass - mean * mean;
+    }
+    return trace < 0.15 * body->config.speck_reach * body->config.speck_reach;
+}
+
+/* Parts with a smaller share may make copies weak. */
+static double gxp_least_share(const gx_body *body) { return fmax(body->config.follow_below, body->config.bend_below); }
+
+/* May the element have a weak copy, or a part of a speck? */
 static int gxp_is_thin(const gx_body *body, uint32_t element) {
-    const double least = fmax(body->config.follow_below, body->config.bend_below);
+    const double least = gxp_least_share(body);
     uint32_t cell;
     for (cell = element; cell != GXP_NONE; cell = body->cells.data[cell].next)
-        if (body->cells.data[cell].kept && gxp_part_share(body, cell) < least) return 1;
+        if (body->cells.data[cell].kept && (gxp_part_share(body, cell) < least || gxp_is_small(body, cell))) return 1;
     return 0;
 }
 
@@ -9077,62 +9095,89 @@ static uint32_t gxp_find_cell(const gx_body *body, gxp_supports *supports, uint3
     return best == GXP_NONE ? count : 0;
 }
 
-/* How far a cell reaches within its element: the square root of the trace of its covariance in barycentric coordinates
-   over that of the element, which is 4 (1/10 - 1/16). The reach of a speck in a corner is about its size; the reach of
-   a layer, however thin, is about 1. */
-static double gxp_cell_reach(const gxp_cell *cell) {
-    double mass = 0, trace = 0;
-    int i, k;
-    for (i = 0; i < 4; i++)
-        for (k = 0; k < 4; k++) mass += cell->mass[gxp_mass_at[i][k]];
-    for (i = 0; i < 4 && mass > 0; i++) {
-        const double mean = gxp_mass_row(cell->mass, i) / mass;
-        trace += cell->mass[gxp_mass_at[i][i]] / mass - mean * mean;
+/* Lists the copies of a small cell's fragment in the queue. Returns their number, or 0 if one of its cells is not
+   small. */
+static uint32_t gxp_find_speck(const gx_body *body, gxp_supports *supports, uint32_t cell) {
+    uint32_t done, count = 1;
+    int k;
+    supports->search++;
+    supports->queue[0] = body->cells.data[cell].copies[0];
+    supports->seen[supports->queue[0]] = supports->search;
+    for (done = 0; done < count; done++) {
+        gxp_around around = gxp_around_copy(body, supports->queue[done]);
+        while (gxp_next_around(body, &around)) {
+            if (!gxp_is_small(body, around.cell)) return 0;
+            for (k = 0; k < 4; k++) {
+                const uint32_t copy = body->cells.data[around.cell].copies[k];
+                if (supports->seen[copy] == supports->search) continue;
+                supports->seen[copy] = supports->search;
+                supports->queue[count++] = copy;
+            }
+        }
     }
-    return trace > 0 ? sqrt(trace / 0.15) : 0;
+    return count;
+}
+
+/* The first `count` copies of the queue move as a point, as the first copy of a cell does. */
+static void gxp_let_follow(const gx_body *body, gxp_supports *supports, uint32_t count, uint32_t cell) {
+    const uint32_t lead = body->cells.data[cell].copies[0];
+    uint32_t i;
+    for (i = 0; i < count; i++) {
+        const uint32_t copy = supports->queue[i];
+        supports->weak[copy] = copy == lead ? GXP_FREE : GXP_FOLLOWS_POINT;
+        supports->cell[copy] = cell;
+    }
 }
 
 /* A fragment without a strong cell: the first `count` copies of the queue. Either its copies are weak by comparison
-   with its fullest part, or it is a speck and moves as a point. */
+   with its fullest part, or it moves as a point. */
 static void gxp_weigh_fragment(const gx_body *body, gxp_supports *supports, uint32_t count) {
-    uint32_t i, fullest = GXP_NONE, lead;
-    double most = 0, reach = 0;
+    uint32_t i, fullest = GXP_NONE;
+    double most = 0;
     for (i = 0; i < count; i++) {
         gxp_around around = gxp_around_copy(body, supports->queue[i]);
         while (gxp_next_around(body, &around)) {
             const double share = gxp_part_share(body, around.cell);
-            if (fullest == GXP_NONE || share > most) {
-                most = share;
-                fullest = around.cell;
-            }
-            reach = fmax(reach, gxp_cell_reach(&body->cells.data[around.cell]));
+            if (fullest != GXP_NONE && share <= most) continue;
+            most = share;
+            fullest = around.cell;
         }
     }
-    lead = body->cells.data[fullest].copies[0];
-    for (i = 0; i < count; i++) {
-        const uint32_t copy = supports->queue[i];
-        if (most >= body->config.speck_below && reach >= body->config.speck_reach)
-            supports->weak[copy] = gxp_is_weak(body, copy, body->config.follow_below * most) ? GXP_FOLLOWS : GXP_FREE;
-        else {
-            supports->weak[copy] = copy == lead ? GXP_FREE : GXP_FOLLOWS_POINT;
-            supports->cell[copy] = fullest;
-        }
-    }
+    if (most < body->config.speck_below)
+        gxp_let_follow(body, supports, count, fullest);
+    else
+        for (i = 0; i < count; i++)
+            supports->weak[supports->queue[i]] =
+                gxp_is_weak(body, supports->queue[i], body->config.follow_below * most) ? GXP_FOLLOWS : GXP_FREE;
+}
+
+/* Specks move as points. */
+static void gxp_make_points(const gx_body *body, gxp_supports *supports) {
+    uint32_t i, cell;
+    for (i = 0; i < body->model.thin.count; i++)
+        for (cell = body->model.thin.data[i]; cell != GXP_NONE; cell = body->cells.data[cell].next)
+            if (body->cells.data[cell].kept && supports->cell[body->cells.data[cell].copies[0]] == GXP_NONE &&
+                gxp_is_small(body, cell))
+                gxp_let_follow(body, supports, gxp_find_speck(body, supports, cell), cell);
 }
 
 /* Finds the weak copies of the body and what each follows. Returns their number. */
 static uint32_t gxp_find_supports(const gx_body *body, gxp_supports *supports) {
+    const double least = gxp_least_share(body);
     uint32_t i, cell, count = 0;
     int k;
     supports->search = 1;
     for (i = 0; i < body->model.thin.count; i++)
-        for (cell = body->model.thin.data[i]; cell != GXP_NONE; cell = body->cells.data[cell].next)
-            for (k = 0; k < 4 && body->cells.data[cell].kept; k++) {
+        for (cell = body->model.thin.data[i]; cell != GXP_NONE; cell = body->cells.data[cell].next) {
+            if (!body->cells.data[cell].kept || gxp_part_share(body, cell) >= least) continue;
+            for (k = 0; k < 4; k++) {
                 const uint32_t copy = body->cells.data[cell].copies[k];
                 if (supports->seen[copy] == supports->search) continue;
                 supports->seen[copy] = supports->search;
                 supports->weak[copy] = gxp_is_stray(body, copy) ? GXP_FOLLOWS : GXP_FREE;
             }
+        }
+    gxp_make_points(body, supports);
     for (i = 0; i < body->copies.count; i++) {
         while (supports->weak[i] && supports->cell[i] == GXP_NONE) {
             const uint32_t met = gxp_find_cell(body, supports, i);
