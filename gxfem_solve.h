@@ -551,8 +551,8 @@ typedef struct gxs_solver gxs_solver;
  * where they are. Both get the velocity of that motion. GX_ERROR_SEQUENCE: no model is set. GX_ERROR_DIVERGED and, with
  * GXS_STATIC, GX_ERROR_FREE leave displacement and velocity unchanged. A residual above newton_tolerance when the
  * iterations are used up is no error: see the report. Allocates (GX_ERROR_MEMORY) only if there are more springs,
- * contact points and pairs, or copies of them, than ever before, and in the first step of a model with GXS_EXPLICIT or
- * quick. */
+ * contact points and pairs, or copies of them, than ever before, in the first step of a model with GXS_EXPLICIT or
+ * quick, and in the first step after a change of the model that uses multigrid. */
 GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *step, double *displacement,
                                     double *velocity, gxs_step_report *report, gx_failure *failure);
 /* Checks the parts of a step's description that need no solver: its numbers, springs, points, planes and pairs, and
@@ -1671,17 +1671,21 @@ typedef struct gxsp_mesh {
     uint32_t partial_count;
 } gxsp_mesh;
 
-/* Structure of the multigrid, and the numbers of its matrices. Everything below level 0 is in its own pool, which an
- * update replaces. */
+/* Structure of the multigrid, and the numbers of its matrices. Everything below level 0 is in its own pool, which is
+ * replaced with the levels. The first solve that uses levels makes them, or brings them up to date: see
+ * gxsp_fit_levels. */
 typedef struct gxsp_multigrid {
     gxsp_pool pool;
     gxsp_level levels[GXSP_LEVELS]; /* level 0 is the model */
-    uint32_t level_count;           /* 0: no multigrid */
-    int chosen;                     /* the preconditioner was chosen by the size of components */
-    int used;                       /* the levels precondition the solve at work */
-    gxsp_fine *fine;                /* block_count: entries of the assembled matrix, levels[0]; NULL: matrix-free */
-    gxsp_edges edges;               /* of the chunk at work; its arrays are in scratch or shared memory */
-    gxsp_pairs pairs;               /* of the chunk at work; its arrays are in scratch or shared memory */
+    uint32_t level_count;           /* 0: there are no levels, or none yet */
+    double spacing;                 /* of level 1's lattice, m; 0: there can be no levels */
+    uint8_t *dirty;   /* by node of level 1: some of its followers have been touched since the levels were made */
+    int fits;         /* the model has not been updated since the levels were made */
+    int chosen;       /* the preconditioner was chosen by the size of components */
+    int used;         /* the levels precondition the solve at work */
+    gxsp_fine *fine;  /* block_count: entries of the assembled matrix, levels[0]; NULL: matrix-free */
+    gxsp_edges edges; /* of the chunk at work; its arrays are in scratch or shared memory */
+    gxsp_pairs pairs; /* of the chunk at work; its arrays are in scratch or shared memory */
     gxsp_factor factor;
 } gxsp_multigrid;
 
@@ -1786,12 +1790,12 @@ typedef struct gxsp_affine {
     double (*full)[10][9]; /* group_count: blocks of the parts p <= q, in the order of gxs_element.mass, by rows */
     float (*root)[78];     /* group_count: W by rows, lower triangle: the inverse of the 12x12 block is W^T W */
     uint32_t *hidden; /* by node of level 1: the first of its three hidden nodes, or GXSP_NONE. NULL: no multigrid */
-    uint32_t hidden_count;     /* nodes that hidden has */
-    float (*offset)[4][3];     /* group_count: (X_i - X_J) / length for each parent J */
-    double origin[3], spacing; /* of level 1's lattice before it was widened, m */
-    float stretch;             /* by which it was widened */
-    double *block;             /* 9 per entry of level 1: what the elements here add */
-    double *entry;             /* factor of level 1, rows as in gxsp_factor */
+    uint32_t hidden_count; /* nodes that hidden has */
+    float (*offset)[4][3]; /* group_count: (X_i - X_J) / length for each parent J */
+    double origin[3];      /* of level 1's lattice, m */
+    float stretch;         /* by which it was widened */
+    double *block;         /* 9 per entry of level 1: what the elements here add */
+    double *entry;         /* factor of level 1, rows as in gxsp_factor */
 } gxsp_affine;
 
 /* A block's elements in explicit steps. A lane without an element has zeros. */
@@ -1884,6 +1888,7 @@ typedef struct gxsp_problem {
     double least;       /* smallest residual so far */
     int based;          /* components know E at base */
     int noise;          /* at the end of the line search energies differed by rounding only */
+    int starved;        /* there was no memory for coarse levels */
     int collapsed;      /* the linearisation found elements collapsed to a point */
     gxs_step_report report;
 } gxsp_problem;
@@ -4398,11 +4403,10 @@ static void gxsp_copy_direction(const gxsp_pass *pass, uint32_t copy, double *GX
 /* A coordinate in spacings of a lattice. Keeps lattice planes off those of the mesh */
 static float gxsp_place(double x, double origin, double spacing) { return (float)((x - origin) / spacing) + 0.31f; }
 
-/* Rest positions in spacings of the first lattice: GXSP_SPACING edges of an average whole element. Returns
- * the spacing; 0: there is no lattice. */
-static double gxsp_find_places(const gxsp_system *system, const gxs_model *model, float (*to)[3]) {
-    double volume = 0, spacing;
-    size_t e, i, k, counted = 0;
+/* Spacing of the first lattice: GXSP_SPACING edges of an average whole element; 0: there is no lattice */
+static double gxsp_find_spacing(const gxs_model *model) {
+    double volume = 0;
+    size_t e, counted = 0;
     for (e = 0; e < model->element_count; e++) {
         const double *g = &model->elements[e].gradient[1][0];
         double inverse = g[0] * (g[4] * g[8] - g[5] * g[7]) + g[1] * (g[5] * g[6] - g[3] * g[8]) +
@@ -4412,14 +4416,19 @@ static double gxsp_find_places(const gxsp_system *system, const gxs_model *model
             counted++;
         }
     }
-    if (counted == 0) return 0;
-    spacing = GXSP_SPACING * cbrt(5 * volume / (double)counted); /* five elements to a cube */
+    return counted > 0 ? GXSP_SPACING * cbrt(5 * volume / (double)counted) : 0; /* five elements to a cube */
+}
+
+/* Rest positions in spacings of the first lattice. 0: there is no lattice. to: n x 3 */
+static int gxsp_find_places(const gxsp_system *system, float (*to)[3]) {
+    size_t i, k;
     for (i = 0; i < system->model.n; i++)
         for (k = 0; k < 3; k++) {
-            to[i][k] = gxsp_place(system->model.positions[3 * i + k], system->model.positions[k], spacing);
+            to[i][k] =
+                gxsp_place(system->model.positions[3 * i + k], system->model.positions[k], system->multigrid.spacing);
             if (!(fabs((double)to[i][k]) < 1e6)) return 0; /* single precision could not hold it */
         }
-    return spacing;
+    return 1;
 }
 
 /* Lattice cell, order of axes and weights at a place */
@@ -4853,10 +4862,11 @@ static void gxsp_nested_offsets(gxsp_system *system) {
             for (a = 0; a < 3; a++) {
                 const uint32_t copy = affine->member[group][0], parent = fine->parent[copy][k];
                 const double x = system->model.positions[3 * (size_t)copy + (size_t)a];
-                const float place = gxsp_place(x, affine->origin[a], affine->spacing) / affine->stretch;
+                const float place = gxsp_place(x, affine->origin[a], system->multigrid.spacing) / affine->stretch;
                 if (parent == GXSP_NONE) continue;
-                affine->offset[group][k][a] = (float)(((double)place - fine[1].place[parent][a]) *
-                                                      ((double)affine->stretch * affine->spacing) / affine->length);
+                affine->offset[group][k][a] =
+                    (float)(((double)place - fine[1].place[parent][a]) *
+                            ((double)affine->stretch * system->multigrid.spacing) / affine->length);
             }
 }
 
@@ -5369,7 +5379,7 @@ static void gxsp_nested_begin(gxsp_system *system, uint32_t count) {
 }
 
 /* The same where copies are affine. Level 1 is factored, so its lattice is widened until that is cheap. */
-static void gxsp_nested_make(gxsp_system *system, gxsp_pool *scratch, float (*place)[3], double spacing) {
+static void gxsp_nested_make(gxsp_system *system, gxsp_pool *scratch, float (*place)[3]) {
     gxsp_level *next = &system->multigrid.levels[1];
     float(*own)[3] = (float(*)[3])gxsp_take(scratch, system->model.n, sizeof *own);
     uint8_t *left_out = (uint8_t *)gxsp_take(scratch, system->model.n, 1);
@@ -5383,7 +5393,6 @@ static void gxsp_nested_make(gxsp_system *system, gxsp_pool *scratch, float (*pl
     mark = scratch->last;
     for (i = 0; i < system->model.n && left_out; i++) left_out[i] = system->model.fixed[i] || gxsp_is_hidden(system, i);
     memcpy(system->affine.origin, system->model.positions, sizeof system->affine.origin);
-    system->affine.spacing = spacing;
     for (stretch = GXSP_NESTED_FROM;; stretch *= 1.25f) {
         if (scratch->failed) return;
         for (i = 0; i < 3 * system->model.n; i++) own[i / 3][i % 3] = place[i / 3][i % 3] / stretch;
@@ -5539,7 +5548,7 @@ static void gxsp_share_memory(gxsp_system *system) {
     gxsp_space passes = {NULL, 0}, numbers = {NULL, 0};
     size_t size;
     gxsp_passes_carve(system, &passes);
-    if (system->multigrid.level_count > 0) gxsp_numbers_carve(system, &numbers);
+    if (system->multigrid.level_count > 0 && system->multigrid.fits) gxsp_numbers_carve(system, &numbers);
     size = passes.used > numbers.used ? passes.used : numbers.used;
     if (size > system->vectors.shared_room) {
         const size_t room = system->vectors.shared ? gxsp_room(size) : size;
@@ -5552,6 +5561,28 @@ static void gxsp_share_memory(gxsp_system *system) {
     passes.used = 0;
     gxsp_passes_carve(system, &passes);
     gxsp_return_memory(system);
+}
+
+/* What levels have beside their structure, once they are those of the present model */
+static void gxsp_levels_end(gxsp_system *system) {
+    system->multigrid.dirty = (uint8_t *)gxsp_take(&system->multigrid.pool, system->multigrid.levels[1].n, 1);
+    system->multigrid.fits = 1;
+    gxsp_share_memory(system);
+}
+
+/* All levels anew. spacing becomes 0 if there is nothing to coarsen. */
+static void gxsp_make_levels(gxsp_system *system, gxsp_pool *scratch) {
+    float(*place)[3] = (float(*)[3])gxsp_take(scratch, system->model.n, sizeof *place);
+    const int known = place && gxsp_find_places(system, place);
+    if (known && system->affine.count > 0)
+        gxsp_nested_make(system, scratch, place);
+    else if (known)
+        gxsp_multigrid_make(system, scratch, place);
+    if (scratch->failed || system->multigrid.pool.failed) return;
+    if (system->multigrid.level_count > 0)
+        gxsp_levels_end(system);
+    else
+        system->multigrid.spacing = 0;
 }
 
 /* Lends shared memory to the making of coarse numbers, until gxsp_return_memory. */
@@ -5620,8 +5651,6 @@ static int gxsp_large_component(const gxsp_system *system, uint32_t *count) {
 /* Everything that depends on the choice of matrix and preconditioner. forest: n, scratch */
 static void gxsp_preconditioner_make(gxsp_system *system, gxsp_pool *scratch, const gxs_model *model,
                                      gxs_preconditioner preconditioner, gxs_matrix matrix, uint32_t *forest) {
-    float(*place)[3]; /* rest positions in spacings of the first lattice */
-    double spacing;
     const int multigrid =
         model->positions &&
         (preconditioner == GXS_MULTIGRID || (preconditioner == GXS_AUTOMATIC && gxsp_large_component(system, forest)));
@@ -5630,14 +5659,8 @@ static void gxsp_preconditioner_make(gxsp_system *system, gxsp_pool *scratch, co
     system->multigrid.levels[0].n = (uint32_t)system->model.n;
     if (matrix == GXS_MATRIX_ASSEMBLED) gxsp_fine_make(system, scratch);
     if (!multigrid) return;
+    system->multigrid.spacing = gxsp_find_spacing(model);
     gxsp_transfer_make(&system->pool, &system->multigrid.levels[0]);
-    place = (float(*)[3])gxsp_take(scratch, system->model.n, sizeof *place);
-    if (system->pool.failed || scratch->failed) return;
-    spacing = gxsp_find_places(system, model, place);
-    if (spacing > 0 && system->affine.count > 0)
-        gxsp_nested_make(system, scratch, place, spacing);
-    else if (spacing > 0)
-        gxsp_multigrid_make(system, scratch, place);
 }
 
 /* Everything about a model that does not depend on its state. scratch: for temporary memory. Returns the index of a
@@ -5696,7 +5719,7 @@ static void gxsp_steps_make(gxsp_system *system) {
     const size_t n = system->model.n;
     gxsp_vectors *vectors = &system->vectors;
     gxsp_columns_make(system, GXSP_COLUMNS(gxsp_copy_columns), GXSP_FOR_STEPS, n);
-    if (system->multigrid.level_count > 0)
+    if (system->multigrid.spacing > 0)
         system->coarse.displacement = (double *)gxsp_take(&system->pool, n, 3 * sizeof(double));
     if (system->model.damps) vectors->damping = (double *)gxsp_take(&system->pool, n, 3 * sizeof(double));
     if (system->multigrid.fine) vectors->right = (gxsp_vector4 *)gxsp_take(&system->pool, n, sizeof(gxsp_vector4));
@@ -7737,16 +7760,22 @@ static void gxsp_extra_diagonal(gxsp_system *system) {
             memset(slots + 6 * (size_t)system->mesh.copy_slot[s], 0, 6 * sizeof *slots);
 }
 
-/* Hessian of the elements, times scale, and inverse block diagonal at a displacement. 0: a number overflowed. */
-static int gxsp_linearise(gxsp_system *system, double rate, const double *from, int exact, int *collapsed) {
+/* The pass that makes a step's Hessian */
+static gxsp_pass gxsp_pass_of(gxsp_system *system, double rate, const double *from, int exact) {
     gxsp_pass pass;
-    size_t i;
     memset(&pass, 0, sizeof pass);
     pass.system = system;
     pass.materials = system->state.damped;
     pass.rate = system->model.scale * rate;
     pass.from = from;
     pass.exact = exact;
+    return pass;
+}
+
+/* Hessian of the elements, times scale, and inverse block diagonal at a displacement. 0: a number overflowed. */
+static int gxsp_linearise(gxsp_system *system, double rate, const double *from, int exact, int *collapsed) {
+    gxsp_pass pass = gxsp_pass_of(system, rate, from, exact);
+    size_t i;
     gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_linearise, &pass);
     gxsp_extra_diagonal(system);
     if (system->affine.count > 0) {
@@ -8905,9 +8934,9 @@ typedef struct gxsp_renewal {
     uint32_t bent_count, added_count;        /* added_count: elements of the change with affine copies */
     uint32_t *left, *left_class, left_count; /* left_count elements of the change that take no lane of their group, and
                                                 their classes */
-    uint8_t *dirty; /* by node of level 1 before the update: some of its followers are touched */
-    uint8_t *alike; /* change->copy_count: the copy follows the same copies as before */
-    int dear;       /* level 1 has become too dear to be factored */
+    uint8_t *alike;                          /* change->copy_count: the copy follows the same copies as before */
+    int dear;                                /* level 1 has become too dear to be factored */
+    gxsp_pass *linearised; /* see gxsp_fit_levels; NULL: a step will linearise before it needs Hessians */
 } gxsp_renewal;
 
 /* Groups that change: a bit for each, indexed by the low bits of their numbers */
@@ -9011,13 +9040,19 @@ static void gxsp_match_edits(gxsp_renewal *update) {
     }
 }
 
-/* Touches a copy as of before the update, and marks the coarse nodes that it follows as dirty. */
-static void gxsp_touch_copy(const gxsp_renewal *update, uint32_t copy) {
-    const gxsp_multigrid *multigrid = &update->system->multigrid;
+/* Marks the coarse nodes that a copy, as of before the update, follows as dirty. */
+static void gxsp_mark_parents(const gxsp_system *system, uint32_t copy) {
     int q;
+    for (q = 0; q < 4 && system->multigrid.level_count > 0; q++) {
+        const uint32_t parent = system->multigrid.levels[0].parent[copy][q];
+        if (parent != GXSP_NONE) system->multigrid.dirty[parent] = 1;
+    }
+}
+
+/* Touches a copy as of before the update. */
+static void gxsp_touch_copy(const gxsp_renewal *update, uint32_t copy) {
     if (update->successor[copy] != GXSP_NONE) update->touched[update->successor[copy]] = 1;
-    for (q = 0; q < 4 && multigrid->level_count > 0; q++)
-        if (multigrid->levels[0].parent[copy][q] != GXSP_NONE) update->dirty[multigrid->levels[0].parent[copy][q]] = 1;
+    gxsp_mark_parents(update->system, copy);
 }
 
 /* Touches the copies around elements that go. */
@@ -9457,7 +9492,7 @@ static void gxsp_touch_followers(gxsp_renewal *update) {
     const gxsp_system *system = update->system;
     const gxs_change *change = update->change;
     size_t i;
-    int k, q;
+    int k;
     for (i = 0; i < change->constraint_count && system->model.follower_count > 0; i++) {
         const uint32_t copy = change->constraints[i].copy, origin = change->origins[copy];
         if (!(origin & 1) && gxsp_follows(system, origin >> 1))
@@ -9470,10 +9505,7 @@ static void gxsp_touch_followers(gxsp_renewal *update) {
         if (update->successor[copy] != GXSP_NONE && update->alike[update->successor[copy]]) continue;
         for (k = -1; k < 4; k++) {
             const uint32_t other = k < 0 ? copy : system->model.followers[i].master[k];
-            if (update->successor[other] != GXSP_NONE) update->touched[update->successor[other]] = 1;
-            for (q = 0; q < 4 && system->multigrid.level_count > 0; q++)
-                if (system->multigrid.levels[0].parent[other][q] != GXSP_NONE)
-                    update->dirty[system->multigrid.levels[0].parent[other][q]] = 1;
+            gxsp_touch_copy(update, other);
         }
     }
     for (i = 0; i < change->constraint_count; i++) /* followers from now on */
@@ -9481,9 +9513,7 @@ static void gxsp_touch_followers(gxsp_renewal *update) {
             const uint32_t other = k < 0 ? change->constraints[i].copy : change->constraints[i].master[k],
                            origin = change->origins[other] >> 1;
             update->touched[other] = 1;
-            for (q = 0; q < 4 && system->multigrid.level_count > 0; q++)
-                if (system->multigrid.levels[0].parent[origin][q] != GXSP_NONE)
-                    update->dirty[system->multigrid.levels[0].parent[origin][q]] = 1;
+            gxsp_mark_parents(system, origin);
         }
 }
 
@@ -9565,10 +9595,10 @@ static void gxsp_renew_components(gxsp_renewal *update) {
  * the model, and numbers. Numbers of entries between other nodes are copied. */
 
 /* Does a copy have a dirty parent? */
-static int gxsp_follows_dirty(const gxsp_system *system, uint32_t copy, const uint8_t *dirty) {
+static int gxsp_follows_dirty(const gxsp_system *system, uint32_t copy) {
     const uint32_t *parent = system->multigrid.levels[0].parent[copy];
     int k, any = 0;
-    for (k = 0; k < 4; k++) any |= parent[k] != GXSP_NONE && dirty[parent[k]];
+    for (k = 0; k < 4; k++) any |= parent[k] != GXSP_NONE && system->multigrid.dirty[parent[k]];
     return any;
 }
 
@@ -9588,7 +9618,7 @@ static inline void gxsp_join_slots(const gxsp_renewal *update, uint32_t copy, gx
     for (p = 0; p < 4; p++) {
         const uint32_t slot = 4 * copy + p;
         uint32_t first;
-        if (parent[p] == GXSP_NONE || !update->dirty[parent[p]]) continue;
+        if (parent[p] == GXSP_NONE || !update->system->multigrid.dirty[parent[p]]) continue;
         first = clusters->seen[parent[p]] == clusters->round ? clusters->first[parent[p]] : slot;
         clusters->seen[parent[p]] = clusters->round;
         clusters->first[parent[p]] = first;
@@ -9611,7 +9641,7 @@ static void gxsp_join_chunk(const gxsp_renewal *update, gxsp_chunk *chunk, gxsp_
     int l, k;
     chunk->dirty = 0;
     for (i = 0; i < chunk->node_count; i++)
-        chunk->dirty |= dirty[i] = (uint8_t)gxsp_follows_dirty(update->system, copies[i], update->dirty);
+        chunk->dirty |= dirty[i] = (uint8_t)gxsp_follows_dirty(update->system, copies[i]);
     for (b = 0; b < chunk->block_count && chunk->dirty; b++)
         for (l = 0; l < GXSP_LANES; l++, clusters->round++) {
             const gxsp_corners *corner = &chunk->corners[b];
@@ -9654,7 +9684,7 @@ static uint32_t gxsp_number_dirty(gxsp_renewal *update, uint32_t *forest, uint32
     uint8_t *kept = (uint8_t *)gxsp_take(update->scratch, before, 1);
     for (slot = 0; slot < 4 * fine->n && kept; slot++) {
         uint32_t *parent = &fine->parent[slot / 4][slot % 4], root;
-        if (*parent == GXSP_NONE || !update->dirty[*parent]) continue;
+        if (*parent == GXSP_NONE || !system->multigrid.dirty[*parent]) continue;
         root = gxsp_root(forest, slot);
         if (root != slot)
             *parent = fine->parent[root / 4][root % 4]; /* roots come first in their tree: the root has its number
@@ -9672,7 +9702,7 @@ static uint32_t gxsp_number_dirty(gxsp_renewal *update, uint32_t *forest, uint32
 static void gxsp_drop_fixed(const gxsp_renewal *update) {
     gxsp_level *fine = &update->system->multigrid.levels[0];
     uint32_t i;
-    for (i = 0; i < fine->n; i++)
+    for (i = 0; i < fine->n && update->system->multigrid.level_count > 0; i++)
         if (update->touched[i] && update->system->model.fixed[i]) {
             memset(fine->parent[i], 0xff, sizeof fine->parent[i]);
             memset(fine->weight[i], 0, sizeof fine->weight[i]);
@@ -9703,23 +9733,21 @@ static int gxsp_block_dirty(const gxsp_system *system, const gxsp_affine_block *
 }
 
 /* Numbers of the coarse levels. Those of entries with dirty nodes come from the Hessian at the state at which the
- * others were made, so that the matrix stays semi-definite. */
-static int gxsp_renew_numbers(gxsp_renewal *update, const gxsp_level *before, const double *affine,
+ * others were made, so that the matrix stays semi-definite. Then dirty chunks are linearised by their own pass again.
+ */
+static int gxsp_renew_numbers(const gxsp_renewal *update, const gxsp_level *before, const double *affine,
                               const uint8_t *dirty) {
     gxsp_system *system = update->system;
-    gxsp_pass pass;
+    gxsp_pass pass = gxsp_pass_of(system, system->coarse.rate, system->coarse.displacement, 0);
     uint32_t c;
     int finite;
     gxsp_keep_blocks(before, &system->multigrid.levels[1], dirty, affine, system->affine.block);
-    memset(&pass, 0, sizeof pass);
-    pass.system = system;
-    pass.materials = system->state.damped;
-    pass.rate = system->model.scale * system->coarse.rate;
-    pass.from = system->coarse.displacement;
     for (c = 0; c < system->mesh.chunk_count; c++)
         if (system->mesh.chunks[c].dirty) {
+            const uint8_t still = system->state.chunk_still[c];
             system->state.chunk_still[c] = 0;
             gxsp_task_linearise(&pass, c);
+            system->state.chunk_still[c] = still;
         }
     for (c = 0; c < system->affine.block_count; c++)
         if (gxsp_block_dirty(system, &system->affine.blocks[c], dirty))
@@ -9730,6 +9758,8 @@ static int gxsp_renew_numbers(gxsp_renewal *update, const gxsp_level *before, co
                           gxsp_nested_numbers(system, pass.rate, dirty)
                     : gxsp_lower_numbers(system, dirty);
     gxsp_return_memory(system);
+    for (c = 0; c < system->mesh.chunk_count && update->linearised; c++)
+        if (system->mesh.chunks[c].dirty) gxsp_task_linearise(update->linearised, c);
     return finite;
 }
 
@@ -9758,8 +9788,8 @@ static uint32_t gxsp_renew_hidden(gxsp_renewal *update, uint32_t before, uint32_
     if (system->multigrid.pool.failed) return count;
     memcpy(system->affine.hidden, hidden, (known < before ? known : before) * sizeof *hidden);
     for (i = 0; i < before; i++)
-        if (system->affine.hidden[i] != GXSP_NONE && update->dirty[i])
-            memset(update->dirty + system->affine.hidden[i], 1, 3);
+        if (system->affine.hidden[i] != GXSP_NONE && system->multigrid.dirty[i])
+            memset(system->multigrid.dirty + system->affine.hidden[i], 1, 3);
     return gxsp_nested_nodes(system, count, count);
 }
 
@@ -9774,7 +9804,7 @@ static uint8_t *gxsp_renew_coarse_nodes(gxsp_renewal *update, const gxsp_level *
     gxsp_level_make(&multigrid->pool, &multigrid->levels[1], all);
     if (update->scratch->failed || multigrid->pool.failed) return dirty;
     memset(dirty, 1, all);
-    memcpy(dirty, update->dirty, before->n);
+    memcpy(dirty, multigrid->dirty, before->n);
     memcpy(multigrid->levels[1].place, before->place, before->n * sizeof *before->place);
     for (i = before->n; i < count; i++)
         memcpy(multigrid->levels[1].place[i], before->place[from[i - before->n]], sizeof *before->place);
@@ -9801,7 +9831,7 @@ static int gxsp_levels_stay(const gxsp_renewal *update) {
     uint32_t c, i;
     if (system->affine.count > 0) return 0;
     for (i = 0; i < system->multigrid.levels[1].n; i++)
-        if (update->dirty[i]) return 0;
+        if (system->multigrid.dirty[i]) return 0;
     for (c = 0; c < system->mesh.chunk_count; c++)
         if (system->mesh.chunks[c].pair_count == 0) return 0;
     return 1;
@@ -9827,7 +9857,6 @@ static void gxsp_remake_levels(gxsp_renewal *update) {
     clusters.round = 1;
     system->multigrid.pool = gxsp_pool_make(&old.allocator);
     if (!scratch->failed) {
-        gxsp_drop_fixed(update);
         gxsp_join_dirty(update, &clusters);
         dirty = gxsp_renew_coarse_nodes(update, &before, from, gxsp_number_dirty(update, clusters.forest, from));
     }
@@ -9837,14 +9866,14 @@ static void gxsp_remake_levels(gxsp_renewal *update) {
         else
             gxsp_levels_make(system, scratch, &before, dirty);
     }
-    if (!scratch->failed && !system->multigrid.pool.failed) gxsp_share_memory(system);
+    if (!scratch->failed && !system->multigrid.pool.failed) gxsp_levels_end(system);
     if (!scratch->failed && !system->multigrid.pool.failed && !system->pool.failed && system->coarse.rate >= 0 &&
-        (gxsp_coarse_is_old(system) || gxsp_most_are_dirty(system, dirty) ||
-         !gxsp_renew_numbers(update, &before, affine, dirty)))
+        (gxsp_most_are_dirty(system, dirty) || !gxsp_renew_numbers(update, &before, affine, dirty)))
         system->coarse.rate = -1;
     gxsp_release_to(&old, NULL);
 }
 
+/* Brings levels up to date with what updates have touched. */
 static void gxsp_renew_levels(gxsp_renewal *update) {
     gxsp_system *system = update->system;
     gxsp_edges_make(system, update->scratch);
@@ -9854,8 +9883,31 @@ static void gxsp_renew_levels(gxsp_renewal *update) {
         return;
     }
     gxsp_count_edges(system);
+    system->multigrid.fits = 1;
     gxsp_share_memory(system);
-    if (gxsp_coarse_is_old(system)) system->coarse.rate = -1;
+}
+
+/* Makes levels, or brings them up to date, for a solve. linearised: the pass that has made the Hessian. 0: there was no
+ * memory. Then there are no levels, and the next solve makes them. */
+static int gxsp_fit_levels(gxsp_system *system, gxsp_pass *linearised) {
+    gxsp_pool scratch = gxsp_pool_make(&system->pool.allocator);
+    gxsp_renewal update;
+    if (system->multigrid.level_count > 0 && system->multigrid.fits) return 1;
+    memset(&update, 0, sizeof update);
+    update.system = system;
+    update.scratch = &scratch;
+    update.linearised = linearised;
+    if (system->multigrid.level_count > 0)
+        gxsp_renew_levels(&update);
+    else
+        gxsp_make_levels(system, &scratch);
+    gxsp_release_to(&scratch, NULL);
+    if (!scratch.failed && !system->pool.failed && !system->multigrid.pool.failed) return 1;
+    gxsp_release_to(&system->multigrid.pool, NULL);
+    system->multigrid.pool.failed = system->pool.failed = 0;
+    system->multigrid.level_count = 0;
+    system->coarse.rate = -1;
+    return 0;
 }
 
 /* History of steps, and data that depends on all copies */
@@ -9888,7 +9940,7 @@ static int gxsp_is_compact(gxsp_renewal *update) {
     if (system->affine.block_count * GXSP_LANES > system->affine.count + system->affine.count / 4 + 2 * GXSP_CHUNK)
         return 0;
     return !count || !system->multigrid.chosen ||
-           gxsp_large_component(system, count) == (system->multigrid.level_count > 0);
+           gxsp_large_component(system, count) == (system->multigrid.spacing > 0);
 }
 
 /* Applies a cut's changes to the existing chunks and levels. 0: the change does not fit. Memory may also have run
@@ -9927,9 +9979,13 @@ static int gxsp_update_system(gxsp_renewal *update) {
     gxsp_set_followers(system, update->change->constraints, update->change->constraint_count);
     if (system->pool.failed) return 1;
     gxsp_renew_components(update);
-    if (!update->scratch->failed && !system->pool.failed && system->multigrid.level_count > 0)
-        gxsp_renew_levels(update);
-    else if (!system->pool.failed)
+    if (update->scratch->failed || system->pool.failed) return 1;
+    gxsp_drop_fixed(update);
+    system->multigrid.fits = 0;
+    if (gxsp_coarse_is_old(system)) system->coarse.rate = -1;
+    if (system->affine.count > 0 && system->multigrid.level_count > 0)
+        gxsp_renew_levels(update); /* now, since only they tell whether their factor is still cheap */
+    else
         gxsp_share_memory(system);
     return !update->dear && gxsp_is_compact(update);
 }
@@ -10894,6 +10950,23 @@ static int gxsp_coarse_pays(gxsp_system *system, double rate) {
     return 0;
 }
 
+/* Are the coarse matrices of other steps than this one? */
+static int gxsp_coarse_differs(const gxsp_problem *problem) {
+    const gxsp_system *system = problem->system;
+    return system->coarse.rate < problem->rate || system->coarse.rate > problem->rate ||
+           system->coarse.quick != system->state.quick;
+}
+
+/* The levels for a solve. 0: there was no memory. */
+static int gxsp_prepare_levels(gxsp_problem *problem) {
+    gxsp_system *system = problem->system;
+    gxsp_pass linearised = gxsp_pass_of(system, problem->rate, system->vectors.current, problem->exact);
+    if (gxsp_coarse_differs(problem)) system->coarse.rate = -1; /* none of their numbers serves on */
+    problem->starved |= !gxsp_fit_levels(system, &linearised);
+    system->multigrid.used = system->multigrid.level_count > 0;
+    return !problem->starved;
+}
+
 /* Updates matrix and preconditioner to the linearisation. Coarse matrices are made anew if there are none, if the
  * rate has changed, if iterations have doubled since they were made, or at the end of their life: before the further
  * iterations cost more than new matrices. */
@@ -10905,11 +10978,11 @@ static int gxsp_prepare(gxsp_problem *problem) {
         if (!gxsp_invert_fine(system)) return 0;
     }
     system->multigrid.used =
-        system->multigrid.level_count > 0 && (system->state.quick || gxsp_coarse_pays(system, problem->rate));
+        system->multigrid.spacing > 0 && (system->state.quick || gxsp_coarse_pays(system, problem->rate));
+    if (system->multigrid.used && !gxsp_prepare_levels(problem)) return 0;
     if (!system->multigrid.used) return 1;
     if (!system->multigrid.fine) gxsp_choose_omega(system, problem->rate);
-    other = system->coarse.rate < problem->rate || system->coarse.rate > problem->rate ||
-            system->coarse.quick != system->state.quick;
+    other = gxsp_coarse_differs(problem);
     if (!other && (problem->exact || !(system->coarse.worn || gxsp_coarse_ends(system)))) return 1;
     system->coarse.lived = system->coarse.served;
     system->coarse.pace_old = other ? 0 : system->coarse.pace;
@@ -13280,6 +13353,7 @@ static gx_result gxsp_step_once(gxs_solver *solver, const gxs_step_desc *step, d
         problem.system->leap.served = 0;
         gxsp_begin(&problem, velocity);
         result = gxsp_minimise(&problem);
+        if (problem.starved) result = GX_ERROR_MEMORY;
         if (result == GX_OK) gxsp_find_end(&problem, displacement, velocity);
     }
     if (result == GX_OK) result = gxsp_finish(&problem, displacement, velocity);
@@ -13707,7 +13781,6 @@ GXFEM_API gx_result gxs_solver_update(gxs_solver *solver, const gxs_change *chan
     update.before = system->model.n;
     update.successor = (uint32_t *)gxsp_take(&scratch, system->model.n, sizeof(uint32_t));
     update.touched = (uint8_t *)gxsp_take(&scratch, change->copy_count, 1);
-    update.dirty = (uint8_t *)gxsp_take(&scratch, system->multigrid.levels[1].n, 1);
     update.alike = (uint8_t *)gxsp_take(&scratch, change->copy_count, 1);
     follows = (uint8_t *)gxsp_take(&scratch, change->copy_count, 1);
     bad = scratch.failed ? SIZE_MAX

@@ -326,6 +326,7 @@ START_TEST(coarse_pairs_bound_the_pair) {
     gxsp_share share[SPAN];
     ck_assert_int_eq(gxs_solver_set_model(solver, &t.s.model, NULL), GX_OK);
     system = solver->system;
+    ck_assert(gxsp_fit_levels(system, NULL));
     ck_assert_uint_gt(system->multigrid.level_count, 1);
     own = system->lasting->term, shares = system->lasting->share;
     next = &system->multigrid.levels[1];
