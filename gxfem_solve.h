@@ -1537,6 +1537,7 @@ typedef struct gxsp_component {
     double left;           /* work of the linear solve's remaining residual along the direction; J */
     double rounding;    /* size of the rounding of positions and of the load's terms, in units in the last place; J */
     double length;      /* step length, as a share of the direction */
+    uint32_t movers;    /* copies that neither are fixed nor follow others */
     int settled;        /* its length is found. A chunk whose components are all settled is not evaluated again */
     int risen;          /* E has ended above limit */
     uint32_t lead;      /* index of the component that leads it; its own index: it leads */
@@ -4226,15 +4227,24 @@ static void gxsp_fill_components(gxsp_system *system) {
         gxsp_component *component = &system->model.components[system->model.component[i]];
         component->mass += gxsp_is_hidden(system, i) ? 0 : system->model.lumped[i];
         component->state |= system->model.fixed[i] ? GXSP_HELD : 0;
+        component->movers += !system->model.fixed[i] && !gxsp_is_hidden(system, i);
     }
     for (i = 0; i < system->model.follower_count; i++) {
         const double *w = system->model.followers[i].weight;
-        if (gxsp_is_hidden(system, system->model.followers[i].copy)) continue;
-        if (fabs(w[0] + w[1] + w[2] + w[3] - 1) > 1e-12)
-            system->model.components[system->model.component[system->model.followers[i].copy]].state |= GXSP_UNBALANCED;
+        const uint32_t copy = system->model.followers[i].copy;
+        gxsp_component *component = &system->model.components[system->model.component[copy]];
+        if (gxsp_is_hidden(system, copy)) continue;
+        if (fabs(w[0] + w[1] + w[2] + w[3] - 1) > 1e-12) component->state |= GXSP_UNBALANCED;
+        component->movers -= !system->model.fixed[copy];
     }
     for (p = 0; p < system->model.component_count; p++)
         system->model.components[p].state |= system->model.components[p].mass > 0 ? 0 : GXSP_UNBALANCED;
+}
+
+/* Does a copy have no part in coarse levels? Held ones have none, nor have those of a component that moves as one of
+ * its copies does: the smoother solves for that one, and coarse functions around it would all be the same. */
+static int gxsp_is_left_out(const gxsp_system *system, size_t copy) {
+    return system->model.fixed[copy] || system->model.components[system->model.component[copy]].movers <= 1;
 }
 
 /* The components of every chunk, ascending. partials: NULL, or room for all. Returns how many there are. */
@@ -4493,7 +4503,7 @@ static void gxsp_join_nodes(gxsp_transfer *transfer, uint32_t i, uint32_t j) {
 
 /* Lattice points and weights of a level's nodes, before clusters are joined. place: n x 3, in spacings of the next
  * lattice */
-static void gxsp_transfer_begin(const gxsp_level *level, float (*place)[3], const uint8_t *fixed,
+static void gxsp_transfer_begin(const gxsp_level *level, float (*place)[3], const uint8_t *left_out,
                                 gxsp_transfer *transfer) {
     uint32_t i;
     int k;
@@ -4506,7 +4516,7 @@ static void gxsp_transfer_begin(const gxsp_level *level, float (*place)[3], cons
             transfer->forest[4 * (size_t)i + (size_t)k] = 4 * i + (uint32_t)k;
             /* the error that dropping weights below 1e-4 makes in an affine field is far below what the smoother
              * removes */
-            if (level->weight[i][k] < 1e-4f || (fixed && fixed[i])) {
+            if (level->weight[i][k] < 1e-4f || (left_out && left_out[i])) {
                 transfer->key[4 * (size_t)i + (size_t)k] = 0;
                 level->weight[i][k] = 0;
             }
@@ -5345,14 +5355,15 @@ static int gxsp_thin_crowded(const gxsp_system *system, gxsp_pool *scratch, floa
 static void gxsp_multigrid_make(gxsp_system *system, gxsp_pool *scratch, float (*place)[3]) {
     gxsp_level *fine = &system->multigrid.levels[0];
     gxsp_transfer transfer;
-    uint32_t count;
+    uint8_t *left_out = (uint8_t *)gxsp_take(scratch, system->model.n, 1);
+    uint32_t count, i;
     gxsp_edges_make(system, scratch);
     transfer.key = (uint64_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint64_t));
     transfer.forest = (uint32_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint32_t));
     if (scratch->failed) return;
-    count = gxsp_first_transfer(system, place, system->model.fixed, &transfer);
-    if (gxsp_thin_crowded(system, scratch, place))
-        count = gxsp_first_transfer(system, place, system->model.fixed, &transfer);
+    for (i = 0; i < system->model.n; i++) left_out[i] = (uint8_t)gxsp_is_left_out(system, i);
+    count = gxsp_first_transfer(system, place, left_out, &transfer);
+    if (gxsp_thin_crowded(system, scratch, place)) count = gxsp_first_transfer(system, place, left_out, &transfer);
     if (count == 0 || scratch->failed) return;
     gxsp_level_make(&system->multigrid.pool, fine + 1, count);
     if (system->multigrid.pool.failed) return;
@@ -5391,7 +5402,8 @@ static void gxsp_nested_make(gxsp_system *system, gxsp_pool *scratch, float (*pl
     transfer.key = (uint64_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint64_t));
     transfer.forest = (uint32_t *)gxsp_take(scratch, 4 * system->model.n, sizeof(uint32_t));
     mark = scratch->last;
-    for (i = 0; i < system->model.n && left_out; i++) left_out[i] = system->model.fixed[i] || gxsp_is_hidden(system, i);
+    for (i = 0; i < system->model.n && left_out; i++)
+        left_out[i] = gxsp_is_left_out(system, i) || gxsp_is_hidden(system, i);
     memcpy(system->affine.origin, system->model.positions, sizeof system->affine.origin);
     for (stretch = GXSP_NESTED_FROM;; stretch *= 1.25f) {
         if (scratch->failed) return;
@@ -9698,12 +9710,12 @@ static uint32_t gxsp_number_dirty(gxsp_renewal *update, uint32_t *forest, uint32
     return count;
 }
 
-/* Copies that nothing moves any more have no parents. */
-static void gxsp_drop_fixed(const gxsp_renewal *update) {
+/* Copies that have no part in coarse levels any more have no parents. */
+static void gxsp_drop_left_out(const gxsp_renewal *update) {
     gxsp_level *fine = &update->system->multigrid.levels[0];
     uint32_t i;
     for (i = 0; i < fine->n && update->system->multigrid.level_count > 0; i++)
-        if (update->touched[i] && update->system->model.fixed[i]) {
+        if (update->touched[i] && gxsp_is_left_out(update->system, i)) {
             memset(fine->parent[i], 0xff, sizeof fine->parent[i]);
             memset(fine->weight[i], 0, sizeof fine->weight[i]);
         }
@@ -9980,7 +9992,7 @@ static int gxsp_update_system(gxsp_renewal *update) {
     if (system->pool.failed) return 1;
     gxsp_renew_components(update);
     if (update->scratch->failed || system->pool.failed) return 1;
-    gxsp_drop_fixed(update);
+    gxsp_drop_left_out(update);
     system->multigrid.fits = 0;
     if (gxsp_coarse_is_old(system)) system->coarse.rate = -1;
     if (system->affine.count > 0 && system->multigrid.level_count > 0)
