@@ -7705,7 +7705,7 @@ static gx_result gxp_leaf_in_ball(gx_body *body, uint32_t leaf, const gxp_region
     gxb_complex *cx = body->complex;
     const uint32_t element = gxb_complex_leaf(cx, leaf)->element;
     const gxp_words *points = &body->scratch.facet_points;
-    uint32_t first, count = 0, i, j;
+    uint32_t first = 0, count = 0, i, j;
     double x[9];
     gx_result result = gxb_leaf_resolve_facets(cx, leaf, &first, &count);
     *inside = gxp_element_side(body, element, r->center) >= 0 &&

@@ -938,7 +938,7 @@ static void count_divided(run *r, size_t before) {
 static int move_blade(run *r, const gxio_edge *edge, size_t line) {
     const double start = gxio_seconds(NULL);
     const size_t slots = r->view.slot_count;
-    gx_blade_report report;
+    gx_blade_report report = {0};
     gx_failure failure;
     int code;
     const gx_result result =
