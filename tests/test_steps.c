@@ -658,6 +658,51 @@ START_TEST(tiny_corners_fall) {
 }
 END_TEST
 
+/* A box that is cut out around a node is a speck if it reaches less than a quarter as far as the elements there: it
+   moves as a point, though its parts are well above what else makes copies weak. A larger one moves by its copies. */
+START_TEST(specks_are_told_by_their_reach) {
+    const double half[2] = {0.07, 0.2}; /* of a cube's side */
+    const gx_step_desc step = step_of(0.01, 0);
+    workload w = grid(2, 2, 2, 5);
+    gx_body *body;
+    gx_view view;
+    gxs_model model;
+    uint8_t *in_box;
+    double most = 0, apart = 0;
+    size_t i, c, lead = SIZE_MAX, of_box = 0, follow = 0;
+    add_box(&w, 0, 1 - half[_i], 1 - half[_i], 1 - half[_i], 1 + half[_i], 1 + half[_i], 1 + half[_i]);
+    body = body_of(&w);
+    cut_by(body, &w, 0, 1);
+    view = view_of(body);
+    ck_assert_uint_eq(view.fragment_count, 2);
+    in_box = (uint8_t *)calloc(view.copy_count, 1);
+    for (c = 0; c < 4 * view.cell_count; c++) {
+        if (view.fragment_volume[view.cell_fragment[c / 4]] > 1) continue;
+        most = fmax(most, 6 * view.cell_volume[c / 4]);
+        in_box[view.cell_copies[c]] = 1;
+    }
+    ck_assert_double_gt(most, 1.5e-3);
+    ck_assert_int_eq(gx_body_model(body, &model, NULL), GX_OK);
+    for (c = 0; c < model.constraint_count; c++) follow += in_box[model.constraints[c].copy];
+    for (i = 0; i < view.copy_count; i++) {
+        if (!in_box[i]) continue;
+        if (lead == SIZE_MAX) lead = i;
+        of_box++;
+        view.velocity[3 * i] = w.positions[3 * view.copy_node[i] + 1] - 1;
+    }
+    (void)advance(body, &step, 1);
+    for (i = 0; i < view.copy_count; i++)
+        if (in_box[i]) apart = fmax(apart, fabs(view.velocity[3 * i] - view.velocity[3 * lead]));
+    if (_i == 0)
+        ck_assert_msg(follow == of_box - 1 && !(apart > 0), "%zu of %zu follow, %g m/s apart", follow, of_box, apart);
+    else
+        ck_assert_msg(follow < of_box - 4 && apart > 0.1, "%zu of %zu follow, %g m/s apart", follow, of_box, apart);
+    free(in_box);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
 /* Bodies most of whose copies have too little support of their own can be stepped. Copies that follow others do not
    follow followers. */
 START_TEST(few_supports_are_enough) {
@@ -1126,6 +1171,7 @@ int main(void) {
     tcase_add_test(tests, released_sleepers_fall);
     tcase_add_loop_test(tests, sleepers_see_what_is_written_through_changes, 0, 4 * CHANGE_COUNT);
     tcase_add_loop_test(tests, tiny_corners_fall, 0, 6);
+    tcase_add_loop_test(tests, specks_are_told_by_their_reach, 0, 2);
     tcase_add_test(tests, copies_without_support_follow_their_fragment);
     tcase_add_loop_test(tests, few_supports_are_enough, 0, 4);
     tcase_add_loop_test(tests, kicked_slivers_stay_with_their_body, 0, 24);
