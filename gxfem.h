@@ -74,8 +74,9 @@
  * coordinates (gxfem_boolean.h). Rounded once, to doubles: volumes, masses and vertices.
  *
  * Not there yet: contact of two bodies of the library (pieces of one touch each other and the host's rigid bodies:
- * gx_body_contact); surfaces given in the deformed state (a moving edge is: gx_blade); unknowns within a partly cut
- * element (a sheet that ends inside an element separates nothing there until another sheet completes it).
+ * gx_body_contact); sheets given in the deformed state (moving edges and closed tools are: gx_blade, gx_body_carve);
+ * unknowns within a partly cut element (a sheet that ends inside an element separates nothing there until another sheet
+ * completes it).
  *
  * Limits: fewer than 2^28 elements a body (2^24 where pointers have 32 bits), fewer than 2^30 cells and 2^30 copies
  * for steps, some 1.4e9 of each other kind of object, 5e8 vertices and triangles a surface (GX_ERROR_LIMIT). A body's
@@ -251,8 +252,8 @@ typedef struct gx_body_desc {
     const uint32_t *element_materials; /* element_count, below material_count; NULL: all of materials[0] */
     const float *texture;              /* node_count x 2: texture coordinates of the outer surface; NULL: all 0 */
     /* A share of an element, below 1. A copy follows others if all parts of elements around it are smaller (see
-       gx_body_step). 0: 1e-3, and for affine copies 6e-2 of the largest part near them. 1e-300: none follow, and
-       slivers may be flung away. */
+       gx_body_step). 0: 1e-3, and for affine copies 6e-2 of the largest part near them; then fragments that reach less
+       than a quarter as far as their elements move as points. 1e-300: none follow, and slivers may be flung away. */
     double support_below;
     /* In thicknesses of elements, 0 ... 1000. Where material is thinner, its copies carry an affine motion each (are
        affine), so that sheets bend as they should. Creation and cuts find it, the latter among what they touch; an
@@ -580,14 +581,14 @@ typedef gxs_step_report gx_step_report;
    A cut wakes the fragments that it touches. Copies that only slivers carry would be held by next to nothing, so they
    follow others (RXFEM Eq. 22; gx_body_desc.support_below): each takes the increment of the displacement field of the
    nearest element without such copies. A fragment without such an element is thin everywhere; its parts are then
-   compared with its fullest part. It moves as a point if that part is smaller than support_below of its element.
-   Where support_below is 0, it moves as a point if that part is smaller than 1e-9 or if no part reaches a tenth as far
-   as its element.
-   An affine copy that follows takes its A from that field too. A point with affine copies
-   is moved as the material at its position at rest is. forces act on displacements alone, anchor_forces on A too;
-   targets leave A as it is, poses turn it. Thin sheets that are flung turn far in a step, and one Newton iteration lags
-   by half of the motion: newton_iterations 0 then takes two to forty, until the motion is within 5 %. Pairs without
-   anchors are refused where copies are affine.
+   compared with its fullest part. It moves as a point if that part is smaller than support_below of its element; where
+   support_below is 0, if that part is smaller than 1e-9. Where support_below is 0, any fragment none of whose cells
+   reaches a quarter as far as its element moves as a point too.
+   An affine copy that follows takes its A from that field too. A point with affine copies is moved as the material at
+   its position at rest is. forces act on displacements alone, anchor_forces on A too; targets leave A as it is, poses
+   turn it. Thin sheets that are flung turn far in a step, and one Newton iteration lags by half of the motion:
+   newton_iterations 0 then takes two to forty, until the motion is within 5 %. Pairs without anchors are refused where
+   copies are affine.
    failure.index: a spring, point, plane, pair, anchor, region or copy. The fields "displacement" and "velocity" are
    those of gx_view. Errors: ARGUMENT, NOT_FINITE, INDEX, LIMIT, MEMORY, STALE (copies of another epoch), RANGE (a
    number is too large or too small; as for FLAT, an element if field is NULL), FLAT (an element, see gx_body_model),
@@ -959,7 +960,7 @@ extern "C" {
 
 #define GXP_NONE UINT32_MAX
 /* Shares of an element, where gx_body_desc.support_below is 0. Copies that no part above GXP_SUPPORT carries follow
-   others. Fragments without a part above GXP_SPECK move as points. */
+   others. Fragments without a part above GXP_SPECK move as points, whatever their reach is. */
 #define GXP_SUPPORT 1e-3
 #define GXP_SPECK   1e-9
 
@@ -5851,10 +5852,10 @@ static gx_result gxp_first_sheets(gx_body *body) {
 }
 
 /* >>specks: pieces that are too small to be meant ------------------------------------------------------------------ */
-/* In: the new cells of a cut, their links and volumes. Out: pairs of leaves across the cut's walls that must stay in
-   one cell so that no speck comes off, and no flake, which is thinner than the tolerance; the cut is then made again.
-   Touches scratch. For cuts by blades only, whose sheets are known to a tolerance: a surface of the caller is cut
-   exactly. */
+/* For cuts by blades only, whose sheets are known to a tolerance: a surface of the caller is cut exactly. In: the new
+   cells of a cut, their links and volumes. Out: pairs of leaves across the cut's walls that must stay in one cell, so
+   that no speck comes off, and no flake, which is thinner than the tolerance. The cut is then made again. A speck here
+   is a piece of next to no volume; >>supports is about fragments of next to no reach. Touches scratch. */
 
 /* Cuts are made at most so many times. */
 #define GXP_SPECK_TRIES 4
@@ -10422,9 +10423,8 @@ GXFEM_API gx_result gx_body_skin_vertices(gx_body *body, const double origin[3],
  * boxes contain the corners of all kept cells of their elements, as copies move them, and what rounding makes of points
  * between these. One pass over the copies finds those that have moved since the last refit. A cluster's box is the hull
  * of the copies of its nodes; it is found again where one of them has moved. Boxes of leaves are found again when a
- walk
- * enters the cluster. All boxes are of where the copies were seen last (copies.seen). Who looks around may walk through
- * boxes that are some slack out of date, in place of a refit.
+ * walk enters the cluster. All boxes are of where the copies were seen last (copies.seen). In place of a refit, a walk
+ * may take boxes that are out of date by some slack.
  *
  * Cuts need no refit: a new copy is where the one is that it comes from, with the same row of copies.seen, and cells
  * only change to such copies. A rollback leaves older rows alone. The last copy, put in the place of a dead one, takes

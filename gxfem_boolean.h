@@ -5608,9 +5608,8 @@ GXFEM_API GXBP_RARE void gxb_complex_barycentric_fixed(gxb_complex *cx, uint32_t
    barycentric coordinates of the point pulled back. Changes nothing but the cache of exact numbers.
  *
  * With e_i = x_i - p, D_0 = e1.(e2 x e3), D_1 = -e0.(e2 x e3), D_2 = (e0 x e1).e3, D_3 = -(e0 x e1).e2. Each is a sum
- of
- * six products of three fenced differences, within 10u of the sum of their sizes (see gxbp_cross_size). S is the sum of
- * these sums; GXBP_PULLBACK_ERROR times S is more than twice the error of each.
+ * of six products of three fenced differences, within 10u of the sum of their sizes (see gxbp_cross_size). S is the sum
+ * of these sums; GXBP_PULLBACK_ERROR times S is more than twice the error of each.
  */
 #define GXBP_PULLBACK_ERROR (24 * GXBP_U)
 

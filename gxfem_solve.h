@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* gxfem_solve.h - implicit time steps of hyperelastic tetrahedra, matrix-free. Part of gxfem 0.2.0.
+/* gxfem_solve.h - time steps of hyperelastic tetrahedra, implicit or explicit, matrix-free. Part of gxfem 0.2.0.
  *
  * In one source file:          #define GXFEM_SOLVE_IMPLEMENTATION       (link with -lm)
  * there and everywhere else:   #include "gxfem_solve.h"
@@ -69,7 +69,7 @@
  * M: mass, U: elastic energy, C: springs and contact, f = M g + nodal forces. f is a linear term, so M is never
  * inverted. Then v = (u - u_n) / h. This is backward Euler. BDF2 and the implicit midpoint rule have other values in
  * place of h and u_n + h v_n; statics have no mass. Mass damping (Rayleigh) is in the first term, stiffness damping in
- * U.
+ * U. Explicit steps minimise nothing: see GXS_EXPLICIT.
  *
  * Newton's method with a line search minimises E. The Hessian of every element is projected to the nearest positive
  * semi-definite one in closed form (analytic eigensystem). Near the end, where steps are whole, the exact one is tried.
@@ -352,8 +352,7 @@ typedef enum gxs_integrator {
        0.3 % of the body's mass more. Forces are single precision. Stable neo-Hookean materials without damping, under
        gravity and forces, without targets, springs, contact points, pairs, constraints or affine copies. Any other
        step is backward Euler: see gxs_step_report.substeps. So is one that would take more than 64 substeps of its own
-       choice, one whose
-       elements are stretched too far for the substeps, and one in which energy would rise */
+       choice, one whose elements are stretched too far for the substeps, and one in which energy would rise */
     GXS_EXPLICIT
 } gxs_integrator;
 
@@ -550,9 +549,9 @@ typedef struct gxs_solver gxs_solver;
  * step. Held copies keep their displacement or go to their target. Copies that no element gives weight or mass stay
  * where they are. Both get the velocity of that motion. GX_ERROR_SEQUENCE: no model is set. GX_ERROR_DIVERGED and, with
  * GXS_STATIC, GX_ERROR_FREE leave displacement and velocity unchanged. A residual above newton_tolerance when the
- * iterations are used up is no error: see the report. Allocates (GX_ERROR_MEMORY) only if there are more springs,
- * contact points and pairs, or copies of them, than ever before, in the first step of a model with GXS_EXPLICIT or
- * quick, and in the first step after a change of the model that uses multigrid. */
+ * iterations are used up is no error: see the report. Allocates (GX_ERROR_MEMORY) only in the first step by multigrid
+ * after a change of the model, in the first one of a model with GXS_EXPLICIT or quick, and if there are more springs,
+ * contact points and pairs, or copies of them, than ever before. */
 GXFEM_API gx_result gxs_solver_step(gxs_solver *solver, const gxs_step_desc *step, double *displacement,
                                     double *velocity, gxs_step_report *report, gx_failure *failure);
 /* Checks the parts of a step's description that need no solver: its numbers, springs, points, planes and pairs, and
@@ -5758,8 +5757,9 @@ static void gxsp_drop_system(gxs_solver *solver) {
 /* >>rule: passes over elements with affine copies ------------------------------------------------------------------ */
 
 /* In: vectors over copies. Out: energies, forces, Hessians, products, diagonal blocks. The field of an element is
- *   u = sum N_i (a_i + A_i (x - X_i)) = sum N_j a_j + sum 4 N_i N_j e_ij over pairs,   e_ij = (A_i - A_j)(X_j - X_i)
- * / 4. So its gradient at a point is that of a linear element whose corners have moved by w_j = a_j + sum 4 N_i e_ij
+ *   u = sum N_i (a_i + A_i (x - X_i)) = sum N_j a_j + sum 4 N_i N_j e_ij over pairs,
+ *   e_ij = (A_i - A_j)(X_j - X_i) / 4.
+ * So its gradient at a point is that of a linear element whose corners have moved by w_j = a_j + sum 4 N_i e_ij
  * over i. At each of four points the passes of >>element serve. u there is sum N_j (a_j + w_j) / 2. A task writes its
  * own block and the slots of it. */
 
@@ -6821,8 +6821,8 @@ static GXSP_COLD void gxsp_block_gather_copies(const gxsp_system *system, const 
 /* Forces of a block, dU/du, added to y; and the largest modulus of its Hessians relative to that at rest. With G the
  * gradient of the displacement x, F = 1 + G, P = mu (1 - 1 / (Ic + 1)) F + (lambda (J - 1) - 3/4 mu) cof F, written so
  * that nothing cancels near rest. The modulus is at most the sum of those of the terms of its derivative:
- *     mu Ic / (Ic + 1) + 2 mu Ic / (Ic + 1)^2 + lambda |cof F|^2 + |lambda (J - 1) - 3/4 mu| |F|, |F| <= (3 + Ic) /
- * sqrt 12
+ *     mu Ic / (Ic + 1) + 2 mu Ic / (Ic + 1)^2 + lambda |cof F|^2 + |lambda (J - 1) - 3/4 mu| |F|,
+ *     |F| <= (3 + Ic) / sqrt 12
  * strain, unless NULL, receives what products need, in place of the modulus; scale: of the operator
  */
 GXSP_INLINE void gxsp_leap_force(const gxsp_leap_block *GXSP_RESTRICT b, gxsp_singles *GXSP_RESTRICT x,
@@ -9955,8 +9955,8 @@ static int gxsp_is_compact(gxsp_renewal *update) {
            gxsp_large_component(system, count) == (system->multigrid.spacing > 0);
 }
 
-/* Applies a cut's changes to the existing chunks and levels. 0: the change does not fit. Memory may also have run
- * out: see the pools. */
+/* Applies a cut's changes to the existing chunks, and marks levels. 0: the change does not fit. Memory may also have
+ * run out: see the pools. */
 static int gxsp_update_system(gxsp_renewal *update) {
     gxsp_system *system = update->system;
     uint32_t *place = NULL; /* of gxsp_affine, before */
