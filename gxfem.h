@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* gxfem.h - cuts deformable bodies: exact where others guess. Part of gxfem 0.2.0.
+/* gxfem.h - cuts deformable bodies, exactly and without remeshing. Part of gxfem 0.2.0.
  *
  * A body is a tetrahedral mesh with a material. Cuts are triangle surfaces in material (rest) coordinates, any number
  * of them, crossing each other as they like. The mesh is never remeshed: where material separates, nodes get further
@@ -55,7 +55,7 @@
  *     a cut:                     >>surfaces >>pinches >>arrange >>solids >>materials >>links >>cells >>components
  *                                >>integrals >>sheets >>specks >>settle >>cut
  *     a sheet's thickness:       >>solidify
- *     what is held and whole:    >>anchors >>regions >>grips >>map >>fragments >>motion
+ *     what is held; fragments:   >>anchors >>regions >>grips >>map >>fragments >>motion
  *     what acts on it:           >>attached >>supports >>model
  *     the skin:                  >>corners >>vertices >>faces >>skinning
  *     points and rays:           >>tree >>locate >>nearest >>hits >>rays
