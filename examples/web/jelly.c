@@ -10,8 +10,8 @@
      >>cutting    strokes, going back
      >>moving     a hand that pulls, steps */
 #define GXFEM_STATIC
-/* What the page loads should be small: what cuts, and all of the page's own, is compiled for size alone. Steps with
- * contact take the time of frames.
+/* What the page loads should be small: what cuts is compiled for size alone. Steps with contact take the time of
+ * frames.
  */
 #ifdef __wasm__
 #define EXPORT(name) __attribute__((export_name(#name), used))
@@ -28,9 +28,6 @@
 #endif
 #define GXFEM_IMPLEMENTATION
 #include "../../gxfem.h"
-#ifdef __wasm__
-#pragma clang attribute push(__attribute__((minsize)), apply_to = function)
-#endif
 #include "../gxshape.h"
 
 enum { NUMBERS = 16, MARKS = 12, MODEL = 4, SHAPE_FAILED = 1000 };
@@ -386,6 +383,3 @@ EXPORT(jelly_step) int jelly_step(void) {
     step.spring_count = holding ? 1 : 0;
     return (int)gx_body_step(body, &step, NULL, NULL);
 }
-#ifdef __wasm__
-#pragma clang attribute pop
-#endif
