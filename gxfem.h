@@ -14346,8 +14346,13 @@ static gx_result gxp_check_empty_step(const gx_body *body, const gx_step_desc *d
     return result;
 }
 
+/* By the step's own clock, if it has one */
+static double gxp_step_seconds(const gx_body *body, const gx_step_desc *desc) {
+    return desc->clock != NULL ? desc->clock(desc->clock_user) : gxp_seconds(body);
+}
+
 GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_step_report *report, gx_failure *failure) {
-    const double start = body != NULL ? gxp_seconds(body) : 0;
+    const double start = body != NULL && desc != NULL ? gxp_step_seconds(body, desc) : 0;
     gxs_step_desc step;
     gxp_touch_surface *surface = NULL;
     gx_failure refused;
@@ -14377,7 +14382,7 @@ GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_ste
     result = gxp_step(body, &step, report, failure);
     if (result == GX_OK && surface != NULL) gxp_keep_contact(body, desc, surface);
     if (result == GX_OK) body->model.resumed = 0;
-    if (result == GX_OK && report != NULL) report->seconds = gxp_seconds(body) - start;
+    if (result == GX_OK && report != NULL) report->seconds = gxp_step_seconds(body, desc) - start;
     return result;
 }
 

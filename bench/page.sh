@@ -440,11 +440,11 @@ steps, root of the mean square over the run, over the largest displacement. defa
     thin_newton
 }
 
-# Rows of shapes.csv of one series; EXPRESSION: of awk
+# Rows of shapes.csv of one series as an expression of awk; the third argument, if there is one: which of them
 shapes_rows() {
     awk -F, -v series="$1" '
         function share(x) { return sprintf("%.2g %%", 100 * x) }
-        $1 == series { print "| " '"$2"' " |" }' "$tables/shapes.csv"
+        $1 == series && ('"${3:-1}"') { print "| " '"$2"' " |" }' "$tables/shapes.csv"
 }
 
 # A body carved out of a grid beside the MESH of one material that has about as many unknowns: time for an unknown, as a multiple
@@ -465,6 +465,20 @@ shapes_order() {
     awk -F, -v series="$1" -v column="$2" '
         $1 == series && $2 == "carved" { error[++n] = $column < 0 ? -$column : $column; cells[n] = $3 }
         END { first = n > 2 ? n - 2 : 1; printf("%.1f", log(error[first] / error[n]) / log(cells[n] / cells[first])) }' "$tables/shapes.csv"
+}
+
+# How many models have a body, how exact these are at most, how many are refused
+shapes_models() {
+    awk -F, '
+        $1 != "model" { next }
+        $14 == "" { refused[$2] = 1; next }
+        { made[$2] = 1; if ($14 + 0 > moments) moments = $14 + 0; if ($15 + 0 > area) area = $15 + 0 }
+        END {
+            for (name in made) bodies++
+            for (name in refused) others++
+            printf("%d models have bodies: the errors are at most %.0e and %.0e.", bodies, moments, area)
+            if (others) printf(" %d are refused, with the place: they are not closed, or reach beyond 2^100.", others)
+        }' "$tables/shapes.csv"
 }
 
 shapes_section() {
@@ -493,12 +507,13 @@ $(shapes_ratio mapped); of the stuffed one: $(shapes_ratio stuffed). Small carve
     heading "cells" triangles elements unknowns s MB "at most"
     shapes_rows cost '$3 " | " $4 " | " $5 " | " $6 " | " $11 " | " $12 " | " $13'
     echo
-    text "Models: the largest error of volume, centre and inertia, by the mass matrices of the cells, beside exact sums over the model's \
-triangles; that of the skin's area. \`MODELS=\` names others to \`make bench-shapes\`. \`tests/test_nasty.c\` does the same with twenty \
-that meshers fail on, of several materials too."
+    text "Models: the largest error of volume, centre and inertia, by the mass matrices of the cells, beside exact sums over the triangles \
+of the model's outline, which a Boolean finds: the model itself, unless it crosses itself; that of the skin's area. $(shapes_models) Rows \
+are those of 500 triangles or more. \`MODELS=\` names others than the first two to \`make bench-shapes\`. \`tests/test_nasty.c\` does the \
+same with twenty that meshers fail on, of several materials too."
     echo
     heading "model" cells triangles elements unknowns moments "area of the skin"
-    shapes_rows model '$2 " | " $3 " | " $4 " | " $5 " | " $6 " | " sprintf("%.0e", $14) " | " sprintf("%.0e", $15)'
+    shapes_rows model '$2 " | " $3 " | " $4 " | " $5 " | " $6 " | " sprintf("%.0e", $14) " | " sprintf("%.0e", $15)' '$4 >= 500 && $14 != ""'
     echo
 }
 
