@@ -64,7 +64,7 @@ help:
 	@echo "make charts      docs/charts/, docs/BENCH.md, tables in README.md from what benches have measured; runs those"
 	@echo "                 that have not; installs gnuplot"
 	@echo "make page-blade  their chart and sections of blades alone, from make bench-blade bench-strokes"
-	@echo "make page-shapes  that of shapes, from make bench-shapes; make page-web: the section of browsers, from make bench-web"
+	@echo "make page-shapes  that of shapes, from make bench-shapes; make page-web, page-intrinsics: likewise"
 	@echo "make bench-NAME  one bench: CSV on stdout and in $(BUILD)/bench/, a table on stderr"
 	@echo "  quadrature     integrals over parts of cut elements beside RXFEM, adaptive and regular sampling"
 	@echo "  stepping       error of the motion against time, over all settings; other methods"
@@ -88,6 +88,7 @@ help:
 	@echo "  soak           100,000 steps of bodies that are cut, kicked and dropped: does a copy run away?"
 	@echo "  frames         frames with a cut beside frames without one"
 	@echo "  web            the page's jelly as WebAssembly, in node and in Chromium, beside native builds"
+	@echo "  intrinsics     steps, contact, cuts and Booleans by intrinsics beside the compiler's own vectors, and by neither"
 	@echo "  skin           the visual surface: moved in each frame, updated after a cut"
 	@echo "  blade          blades in space through bodies that move: pieces, distance to known sheets, cost"
 	@echo "  strokes        thousands of strokes that take material: memory and time beside a body cut at once"
@@ -384,7 +385,7 @@ check-wasm:
 
 # ---- benches. Only their CSV goes to stdout. BENCH=--small: smaller ones, with a folder of their own for tables and charts
 
-benches = quadrature stepping front space thin shapes table2 conditioning failure scaling kernel open smallest solver violent accuracy drift frames skin web blade strokes contact soak
+benches = quadrature stepping front space thin shapes table2 conditioning failure scaling kernel open smallest solver violent accuracy drift frames skin web blade strokes contact soak intrinsics
 small = $(filter --small,$(BENCH))
 tables = $(BUILD)/bench$(if $(small),/small)
 # The compiler's own default: with -std=c99 gcc fuses no multiplications with additions, whatever -march says.
@@ -408,7 +409,7 @@ $(BUILD)/bench/solver: bench/solver.c $(wildcard bench/*.h) $(headers)
 	    $(shell pkg-config --libs CHOLMOD 2>/dev/null || echo -lcholmod) -lm
 
 # Frames are measured as users build: their table stands in the README.
-$(BUILD)/bench/frames $(BUILD)/bench/web $(BUILD)/bench/blade $(BUILD)/bench/strokes: BENCH_CFLAGS = -O2
+$(BUILD)/bench/frames $(BUILD)/bench/web $(BUILD)/bench/blade $(BUILD)/bench/strokes $(BUILD)/bench/intrinsics: BENCH_CFLAGS = -O2
 
 bench-solver:
 	@sh tests/install.sh bench >&2
@@ -450,10 +451,23 @@ run-bench-web: $(BUILD)/bench/web $(web_clang_native) $(web_musl_native)
 	@node bench/web.mjs $(tables)/web.csv $(BUILD)/web "$(shell $(CC) --version | grep -qi clang && echo clang || echo gcc) -O2=$<" \
 	    $(web_clang_native:%="$(newest_clang) -O2=%") $(web_musl_native:%="gcc -O2 musl=%") $(BENCH)
 
+# Builds of one program that differ in where vectors and wide products come from
+$(BUILD)/bench/intrinsics: tests/workloads.h tests/oracle.h tests/rational.h
+$(BUILD)/bench/intrinsics_yes: vectors = -DGXFEM_INTRINSICS
+$(BUILD)/bench/intrinsics_plain: vectors = -DGXFEM_SCALAR -U__SIZEOF_INT128__
+$(BUILD)/bench/intrinsics_yes $(BUILD)/bench/intrinsics_plain: bench/intrinsics.c tests/workloads.h $(wildcard bench/*.h) $(headers)
+	@mkdir -p $(@D)
+	@$(CC) $(bench_standard) $(WARNINGS) -O2 -Wno-unknown-pragmas $(vectors) $< -o $@ $(LDFLAGS) -lm
+
+bench-intrinsics: $(BUILD)/bench/intrinsics $(BUILD)/bench/intrinsics_yes $(BUILD)/bench/intrinsics_plain
+	@mkdir -p $(tables)
+	@sh bench/intrinsics.sh $(tables)/intrinsics.csv extensions=$(BUILD)/bench/intrinsics intrinsics=$(BUILD)/bench/intrinsics_yes \
+	    plain=$(BUILD)/bench/intrinsics_plain $(BENCH)
+
 bench-smallest:
 	@CC="$(CC)" sh bench/smallest.sh $(tables)
 
-plain_benches = $(filter-out bench-solver bench-kernel bench-open bench-smallest bench-web bench-table2 bench-stepping,$(benches:%=bench-%))
+plain_benches = $(filter-out bench-solver bench-kernel bench-open bench-smallest bench-web bench-intrinsics bench-table2 bench-stepping,$(benches:%=bench-%))
 $(plain_benches): bench-%: $(BUILD)/bench/%
 	@mkdir -p $(tables)
 	@$< $(tables)/$*.csv $(BENCH) $(if $(filter scaling,$*),$(MESH)) $(if $(filter shapes,$*),$(MODELS))
@@ -498,9 +512,9 @@ charts:
 	sh bench/page.sh $(tables) $(if $(small),$(tables),docs)/BENCH.md $(if $(small),$(tables)/)README.md || echo charts >>$(tables)/failed
 	@[ ! -e $(tables)/failed ] || { echo "failed: $$(tr '\n' ' ' <$(tables)/failed)" >&2; exit 1; }
 
-# The section of browsers alone, from a table that is there
-page-web:
-	@sh bench/page.sh $(tables) docs/BENCH.md web
+# The section of browsers or of intrinsics alone, from a table that is there
+page-web page-intrinsics: page-%:
+	@sh bench/page.sh $(tables) docs/BENCH.md $*
 
 # The chart and the sections of blades or of shapes alone, from tables that are there
 page-blade page-shapes: page-%:
@@ -524,4 +538,4 @@ check-all: check
 clean:
 	rm -rf $(BUILD)
 
-.PHONY: help web check-web lib bindings check-bindings examples demo check-page scenes pictures animation bench-programs check check-programs run-gxcut run-gxboolean run-corpus $(sort $(programs:%=run-%) $(tests:%=run-%)) FORCE sanitize sanitize-scenes check-settled compile amalgam check-amalgam install check-package coverage formatted lint format fuzz fuzz-blade flags hashes platforms check-wasm $(benches:%=bench-%) run-bench-web bench charts page-blade page-shapes page-web check-all clean
+.PHONY: help web check-web lib bindings check-bindings examples demo check-page scenes pictures animation bench-programs check check-programs run-gxcut run-gxboolean run-corpus $(sort $(programs:%=run-%) $(tests:%=run-%)) FORCE sanitize sanitize-scenes check-settled compile amalgam check-amalgam install check-package coverage formatted lint format fuzz fuzz-blade flags hashes platforms check-wasm $(benches:%=bench-%) run-bench-web bench charts page-blade page-shapes page-web page-intrinsics check-all clean

@@ -605,15 +605,15 @@ GXFEM_API gx_result gx_body_model(gx_body *body, gxs_model *model, gx_failure *f
 
 /* Contact of the body's pieces with each other, and of a piece with itself: lips of a cut, folds. Each step looks for
    vertices of the surface that are in front of, or a little behind, a facet that faces them, and joins the two by a
-   pair (see gxs_pair) of stiffness c E A / (2 h): A is the vertex's share of the surface, h the size of its element, E
-   the smaller of the two moduli. A closed cut then carries load like a layer of thickness h / c. Nothing is pushed at
-   once: pieces that overlap when contact begins, or that are found late, press as they did before, and come apart at
-   the speed `recovery`. What a piece pressed with, and the slip of its friction, stay with the material through cuts.
-   A piece's own thickness is no contact: a facet is left out if it was near at rest and the vertex did not face it
-   then, or was behind it.
-   Pieces press on the caller's rigid bodies as well: see gx_step_desc.colliders. Samples are the vertices of the
-   surface; facets on which the distance from a collider bends have more of them. Each is joined to the tangent plane of
-   the collider there, by c E A / h. A collider that is inside a piece is seen at any depth. */
+   pair (see gxs_pair) of stiffness c E A / (2 h): A is the vertex's share of the surface, h the size of the elements
+   there (the harmonic mean over that share), E the smaller of the two moduli. A closed cut then carries load like a
+   layer of thickness h / c. Nothing is pushed at once: pieces that overlap when contact begins, or that are found late,
+   press as they did before, and come apart at the speed `recovery`. What a piece pressed with, and the slip of its
+   friction, stay with the material through cuts. A piece's own thickness is no contact: a facet is left out if it was
+   near at rest and the vertex did not face it then, or was behind it. Pieces press on the caller's rigid bodies as
+   well: see gx_step_desc.colliders. Samples are the vertices of the surface; facets on which the distance from a
+   collider bends have more of them. Each is joined to the tangent plane of the collider there, by c E A / h. A collider
+   that is inside a piece is seen at any depth. */
 typedef struct gx_contact_desc {
     double stiffness;      /* c; 0: 10. Iterations of a step grow with its root */
     double friction;       /* Coulomb's coefficient, 0 or more */
@@ -1553,14 +1553,16 @@ typedef struct gxp_touch_vertex { /* of the surface: a sample */
     double weights[4]; /* of the copies that move it */
     double rest[3];    /* m */
     double normal[3];  /* outward, of length 1, at rest */
-    double area, size; /* m2: its share of the surface, 0 if it is no sample of pieces; m: of its element */
-    double given;      /* m2: what area is without what other vertices have given, or before it was given away */
+    double area, size; /* m2: its share of the surface, 0 if it is no sample of pieces; m: of an element beside it */
+    double layers;     /* m: the integral of 1 / size over its share, by the size of each facet's element */
+    double given;      /* m: what layers is without what other vertices have given, or before it was given away */
     uint32_t stands;   /* the sample that has its area: itself, or another vertex */
     uint32_t held;     /* of a step: 1 if it pressed on a facet at the end of the last one */
     double young;      /* Pa */
 } gxp_touch_vertex;
 
 typedef struct gxp_touch_facet {
+    double size; /* m: of its element */
     uint32_t vertex[3], element, fragment;
 } gxp_touch_facet;
 
@@ -1592,7 +1594,7 @@ typedef struct gxp_touch_pair {  /* of a step */
     double normal[3];            /* of the other side, in space, of length 1 */
     double gap, approach, score; /* m; m/s; m2: the smallest is taken */
     double gap_before;           /* m: after the step, what gap was before */
-    double area, rest[3];        /* m2, m: of the sample */
+    double layers, rest[3];      /* m: its share of the surface / size of the elements there; of the sample */
     double pressed, slip[3];     /* m: of its state */
     double place[3], way[3];     /* m: of the collider's point at the step's start; its way within the step */
 } gxp_touch_pair;
@@ -1621,7 +1623,7 @@ typedef struct gxp_touch_crowd { /* samples that are sought together */
 
 typedef struct gxp_touch_beside { /* a sample that may come near a collider */
     uint32_t collider, parts;     /* parts above 1: it is a facet, whose edges are divided */
-    double area;                  /* m2: of the facet, or of what this entry adds to a vertex */
+    double layers;                /* m: area / size of the facet, or of what this entry adds to a vertex */
 } gxp_touch_beside;
 
 typedef struct gxp_touch_known { /* a collider of the last step */
@@ -12024,20 +12026,23 @@ static void gxp_facet_normal(const gxp_touch_surface *s, const gxp_touch_facet *
 /* A facet, which gives its corners a third of its area */
 static void gxp_copy_facet(const gx_body *body, uint32_t t, gxp_touch_surface *to, gxp_touch_facet *facet) {
     const gxp_skin *s = &body->skin;
-    double n[3];
+    double n[3], third; /* of its area */
     int k;
     memcpy(facet->vertex, s->triangles + 3 * (size_t)t, sizeof facet->vertex);
     facet->element = s->element[t];
     facet->fragment = s->fragment[t];
+    facet->size = cbrt(6 * gxp_element_volume(body, facet->element));
+    to->largest = fmax(to->largest, facet->size);
     gxp_triangle_normal(s->rest, facet->vertex, n);
+    third = gxp_size(n) / 6;
     for (k = 0; k < 3; k++) {
         gxp_touch_vertex *v = &to->vertices[facet->vertex[k]];
-        v->area = v->given += gxp_size(n) / 6;
+        v->area += third;
+        v->layers = v->given += third / facet->size;
         if (v->element != GXP_NONE) continue;
         v->element = facet->element;
         v->fragment = facet->fragment;
-        v->size = cbrt(6 * gxp_element_volume(body, v->element));
-        to->largest = fmax(to->largest, v->size);
+        v->size = facet->size;
         v->young = body->mesh.materials[s->material[t]].elastic.young;
     }
 }
@@ -12159,7 +12164,8 @@ static gx_result gxp_choose_samples(gx_body *body, gxp_touch_surface *s) {
         }
         if (v->stands == vertex) continue;
         s->vertices[v->stands].area += v->area;
-        v->area = 0;
+        s->vertices[v->stands].layers += v->layers;
+        v->area = v->layers = 0;
     }
     return result;
 }
@@ -12339,7 +12345,7 @@ static gx_result gxp_carry_vertices(gx_body *body, const gxp_touch_surface *from
     for (i = 0; i < to->vertex_count && result == GX_OK; i++) {
         for (; next < members->count && GXP_FIRST(members->data[next]) == i && result == GX_OK; next++) {
             const gxp_touch_vertex *v = &to->vertices[GXP_SECOND(members->data[next])];
-            result = gxp_carry_vertex(body, from, places, elements, v, 0, v->given / to->vertices[i].area, to, i);
+            result = gxp_carry_vertex(body, from, places, elements, v, 0, v->given / to->vertices[i].layers, to, i);
         }
         if (result == GX_OK) result = gxp_carry_vertex(body, from, places, elements, &to->vertices[i], 1, 1, to, i);
     }
@@ -12604,7 +12610,7 @@ static uint32_t gxp_facet_parts(const gx_body *body, const gxp_touch_surface *s,
 }
 
 /* Lists a sample for the search of pairs with a collider. */
-static gx_result gxp_list_sample(gx_body *body, uint32_t sample, uint32_t collider, uint32_t parts, double area) {
+static gx_result gxp_list_sample(gx_body *body, uint32_t sample, uint32_t collider, uint32_t parts, double layers) {
     gxp_touch *t = &body->touch;
     gx_result result =
         gxp_reserve(&body->config.allocator, &t->beside, sizeof *t->beside, t->order.count, &t->beside_capacity, 1);
@@ -12612,7 +12618,7 @@ static gx_result gxp_list_sample(gx_body *body, uint32_t sample, uint32_t collid
     if (result != GX_OK) return result;
     t->beside[t->order.count].collider = collider;
     t->beside[t->order.count].parts = parts;
-    t->beside[t->order.count].area = area;
+    t->beside[t->order.count].layers = layers;
     t->order.data[t->order.count] = (uint64_t)sample << 32 | t->order.count;
     t->order.count++;
     return GX_OK;
@@ -12624,14 +12630,14 @@ static gx_result gxp_list_samples(gx_body *body, const gxp_touch_surface *s, dou
     const gxp_touch_facet *f = &s->facets[facet];
     const gx_collider *c = &body->touch.colliders[collider];
     const uint32_t parts = c->kind == GX_COLLIDER_PLANE ? 1 : gxp_facet_parts(body, s, dt, facet, c, wild);
-    double n[3], area;
+    double n[3], layers;
     gx_result result = GX_OK;
     int k;
     gxp_facet_normal(s, f, n);
-    area = 0.5 * sqrt(gxp_dot(n, n));
-    if (parts > 1) return gxp_list_sample(body, s->vertex_count + facet, collider, parts, area);
+    layers = 0.5 * sqrt(gxp_dot(n, n)) / f->size;
+    if (parts > 1) return gxp_list_sample(body, s->vertex_count + facet, collider, parts, layers);
     for (k = 0; k < 3 && parts == 1 && result == GX_OK; k++)
-        result = gxp_list_sample(body, f->vertex[k], collider, 1, area / 3);
+        result = gxp_list_sample(body, f->vertex[k], collider, 1, layers / 3);
     return result;
 }
 
@@ -13545,7 +13551,7 @@ static gx_result gxp_seek_at_vertex(gx_body *body, const gxp_touch_surface *s, d
 }
 
 /* Lists the pairs of a facet with a collider: at the corners of all parts, each with its share of the area. */
-static gx_result gxp_seek_on_facet(gx_body *body, const gxp_touch_surface *s, double dt, double area,
+static gx_result gxp_seek_on_facet(gx_body *body, const gxp_touch_surface *s, double dt, double layers,
                                    gxp_touch_pair *pair, gx_failure *failure) {
     const gxp_touch_facet *f = &s->facets[pair->sample - s->vertex_count];
     const uint32_t parts = pair->parts;
@@ -13559,7 +13565,7 @@ static gx_result gxp_seek_on_facet(gx_body *body, const gxp_touch_surface *s, do
             pair->share[0] = (double)(parts - i - j) / parts;
             pair->share[1] = (double)i / parts;
             pair->share[2] = (double)j / parts;
-            pair->area = area * (rims == 0 ? 6 : rims == 1 ? 3 : 1) / (3.0 * parts * parts);
+            pair->layers = layers * (rims == 0 ? 6 : rims == 1 ? 3 : 1) / (3.0 * parts * parts);
             pair->rest[0] = pair->rest[1] = pair->rest[2] = 0;
             for (n = 0; n < 3; n++) {
                 for (m = 0; m < 6; m++) x[m] += pair->share[n] * body->touch.moved[9 * (size_t)f->vertex[n] + m];
@@ -13599,17 +13605,17 @@ static gx_result gxp_seek_colliders(gx_body *body, const gxp_touch_surface *s, d
     gx_result result = GX_OK;
     while (*next < t->order.count && GXP_FIRST(t->order.data[*next]) == sample && result == GX_OK) {
         gxp_touch_pair pair = gxp_no_pair(sample);
-        double area = 0;
+        double layers = 0;
         pair.collider = t->beside[GXP_SECOND(t->order.data[*next])].collider;
         pair.parts = t->beside[GXP_SECOND(t->order.data[*next])].parts;
         for (; *next < t->order.count && GXP_FIRST(t->order.data[*next]) == sample &&
                t->beside[GXP_SECOND(t->order.data[*next])].collider == pair.collider;
              (*next)++)
-            area += t->beside[GXP_SECOND(t->order.data[*next])].area;
-        pair.area = area;
+            layers += t->beside[GXP_SECOND(t->order.data[*next])].layers;
+        pair.layers = layers;
         if (!gxp_is_let(t, gxp_sample_vertex(s, sample)->fragment, GXP_NONE, t->colliders[pair.collider].id)) continue;
         result = sample < s->vertex_count ? gxp_seek_at_vertex(body, s, dt, &pair, failure)
-                                          : gxp_seek_on_facet(body, s, dt, area, &pair, failure);
+                                          : gxp_seek_on_facet(body, s, dt, layers, &pair, failure);
     }
     return result == GX_OK ? gxp_wake_left(body, s, sample, first, failure) : result;
 }
@@ -13762,11 +13768,11 @@ static void gxp_set_pair(gx_body *body, const gxp_touch_surface *s, uint32_t i, 
     to->sticking_speed = t->desc.sticking_speed;
     if (pair->facet != GXP_NONE) { /* the other side has a sample of its own somewhere near: each has half */
         const gxp_touch_vertex *w = &s->vertices[s->facets[pair->facet].vertex[0]];
-        to->stiffness = 0.5 * t->desc.stiffness * fmin(v->young, w->young) * v->area / v->size;
+        to->stiffness = 0.5 * t->desc.stiffness * fmin(v->young, w->young) * v->layers;
     } else {
         to->flags = GXS_PAIR_OUTSIDE;
         if (pair->collider != GXP_NONE) {
-            to->stiffness = t->desc.stiffness * v->young * pair->area / v->size;
+            to->stiffness = t->desc.stiffness * v->young * pair->layers;
             to->friction = t->colliders[pair->collider].friction;
         }
         if (pair->collider == GXP_NONE || t->changed.data[pair->collider]) to->flags |= GXS_PAIR_WAKES;
@@ -14346,8 +14352,13 @@ static gx_result gxp_check_empty_step(const gx_body *body, const gx_step_desc *d
     return result;
 }
 
+/* By the step's own clock, if it has one */
+static double gxp_step_seconds(const gx_body *body, const gx_step_desc *desc) {
+    return desc->clock != NULL ? desc->clock(desc->clock_user) : gxp_seconds(body);
+}
+
 GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_step_report *report, gx_failure *failure) {
-    const double start = body != NULL ? gxp_seconds(body) : 0;
+    const double start = body != NULL && desc != NULL ? gxp_step_seconds(body, desc) : 0;
     gxs_step_desc step;
     gxp_touch_surface *surface = NULL;
     gx_failure refused;
@@ -14377,7 +14388,7 @@ GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_ste
     result = gxp_step(body, &step, report, failure);
     if (result == GX_OK && surface != NULL) gxp_keep_contact(body, desc, surface);
     if (result == GX_OK) body->model.resumed = 0;
-    if (result == GX_OK && report != NULL) report->seconds = gxp_seconds(body) - start;
+    if (result == GX_OK && report != NULL) report->seconds = gxp_step_seconds(body, desc) - start;
     return result;
 }
 

@@ -2,7 +2,7 @@
 # Writes what benches have measured as a page with tables and charts, and two parts of the README.
 # usage: sh bench/page.sh TABLES PAGE README
 #        sh bench/page.sh TABLES PAGE blade     writes the sections of blades anew, or makes them; needs their tables alone
-#        sh bench/page.sh TABLES PAGE shapes    the same of shapes; web: of browsers
+#        sh bench/page.sh TABLES PAGE shapes    the same of shapes; web: of browsers; intrinsics: of these
 #     TABLES  directory of the benches' CSV files; a missing one is an error
 #     PAGE    the page; charts are in charts/ beside it
 #     README  what stands between its lines `<!-- NAME -->` and `<!-- end of NAME -->` is written anew: why, speed
@@ -11,11 +11,11 @@ tables=$1
 page=$2
 readme=$3
 
-wanted="quadrature stepping front conditioning failure table2 table2_ratios scaling kernel open smallest solver product violent accuracy drift frames skin web blade strokes thin shapes"
-parts=blade,shapes,web # that are written alone
+wanted="quadrature stepping front conditioning failure table2 table2_ratios scaling kernel open smallest solver product violent accuracy drift frames skin web intrinsics blade strokes thin shapes"
+parts=blade,shapes,web,intrinsics # that are written alone
 case $readme in
 blade) wanted="blade strokes" ;;
-shapes|web) wanted=$readme ;;
+shapes|web|intrinsics) wanted=$readme ;;
 esac
 for bench in $wanted; do
     [ -s "$tables/$bench.csv" ] || { echo "$0: $tables/$bench.csv is missing: make bench-$(echo $bench | sed 's/_ratios//; s/product/solver/')" >&2; exit 2; }
@@ -440,11 +440,11 @@ steps, root of the mean square over the run, over the largest displacement. defa
     thin_newton
 }
 
-# Rows of shapes.csv of one series; EXPRESSION: of awk
+# Rows of shapes.csv of one series as an expression of awk; the third argument, if there is one: which of them
 shapes_rows() {
     awk -F, -v series="$1" '
         function share(x) { return sprintf("%.2g %%", 100 * x) }
-        $1 == series { print "| " '"$2"' " |" }' "$tables/shapes.csv"
+        $1 == series && ('"${3:-1}"') { print "| " '"$2"' " |" }' "$tables/shapes.csv"
 }
 
 # A body carved out of a grid beside the MESH of one material that has about as many unknowns: time for an unknown, as a multiple
@@ -465,6 +465,20 @@ shapes_order() {
     awk -F, -v series="$1" -v column="$2" '
         $1 == series && $2 == "carved" { error[++n] = $column < 0 ? -$column : $column; cells[n] = $3 }
         END { first = n > 2 ? n - 2 : 1; printf("%.1f", log(error[first] / error[n]) / log(cells[n] / cells[first])) }' "$tables/shapes.csv"
+}
+
+# How many models have a body, how exact these are at most, how many are refused
+shapes_models() {
+    awk -F, '
+        $1 != "model" { next }
+        $14 == "" { refused[$2] = 1; next }
+        { made[$2] = 1; if ($14 + 0 > moments) moments = $14 + 0; if ($15 + 0 > area) area = $15 + 0 }
+        END {
+            for (name in made) bodies++
+            for (name in refused) others++
+            printf("%d models have bodies: the errors are at most %.0e and %.0e.", bodies, moments, area)
+            if (others) printf(" %d are refused, with the place: they are not closed, or reach beyond 2^100.", others)
+        }' "$tables/shapes.csv"
 }
 
 shapes_section() {
@@ -493,12 +507,13 @@ $(shapes_ratio mapped); of the stuffed one: $(shapes_ratio stuffed). Small carve
     heading "cells" triangles elements unknowns s MB "at most"
     shapes_rows cost '$3 " | " $4 " | " $5 " | " $6 " | " $11 " | " $12 " | " $13'
     echo
-    text "Models: the largest error of volume, centre and inertia, by the mass matrices of the cells, beside exact sums over the model's \
-triangles; that of the skin's area. \`MODELS=\` names others to \`make bench-shapes\`. \`tests/test_nasty.c\` does the same with twenty \
-that meshers fail on, of several materials too."
+    text "Models: the largest error of volume, centre and inertia, by the mass matrices of the cells, beside exact sums over the triangles \
+of the model's outline, which a Boolean finds: the model itself, unless it crosses itself; that of the skin's area. $(shapes_models) Rows \
+are those of 500 triangles or more. \`MODELS=\` names others than the first two to \`make bench-shapes\`. \`tests/test_nasty.c\` does the \
+same with twenty that meshers fail on, of several materials too."
     echo
     heading "model" cells triangles elements unknowns moments "area of the skin"
-    shapes_rows model '$2 " | " $3 " | " $4 " | " $5 " | " $6 " | " sprintf("%.0e", $14) " | " sprintf("%.0e", $15)'
+    shapes_rows model '$2 " | " $3 " | " $4 " | " $5 " | " $6 " | " sprintf("%.0e", $14) " | " sprintf("%.0e", $15)' '$4 >= 500 && $14 != ""'
     echo
 }
 
@@ -535,6 +550,18 @@ moving body elsewhere by as much."
     echo
 }
 
+# Vectors and wide products by the compiler's extensions, by intrinsics, and without
+intrinsics_section() {
+    echo "## Intrinsics"
+    echo
+    text "One program by \`-O2\`, with vectors and products of 128 bits by the compiler's own extensions; with GXFEM_INTRINSICS, as \
+Microsoft's cl would have them; and in plain C with neither. Medians of nine rounds, in each of which the three run one after the \
+other, time of the processor; instructions of the whole program. Topologies are the same. \`bench/intrinsics.c\` says what is run."
+    echo
+    table intrinsics "| workload | by | ms | to extensions | million instructions | to extensions |"
+    echo
+}
+
 # only FIRST NEXT COMMAND: writes anew what stands from heading FIRST up to heading NEXT, or puts it there
 only() {
     {
@@ -549,7 +576,8 @@ only() {
 case $readme in
 blade) only "## Blades in moving bodies" "## Booleans of closed surfaces" blade_sections ;;
 shapes) only "### Shapes carved out of a grid" "### Beside local solvers" shapes_section ;;
-web) only "## In browsers" "## Blades in moving bodies" web_section ;;
+web) only "## In browsers" "## Intrinsics" web_section ;;
+intrinsics) only "## Intrinsics" "## Blades in moving bodies" intrinsics_section ;;
 esac
 
 {
@@ -701,6 +729,7 @@ solver's model and multigrid where it has touched them, $(range frames 8 1) time
     skin
     echo
     web_section
+    intrinsics_section
     blade_sections
     echo "## Booleans of closed surfaces"
     echo
@@ -747,7 +776,7 @@ judges."
     echo
     echo "| file in \`bench/\` | what it is |"
     echo "| --- | --- |"
-    echo "| \`quadrature.c\`, \`stepping.c\`, \`space.c\`, \`thin.c\`, \`shapes.c\`, \`front.c\`, \`table2.c\`, \`conditioning.c\`, \`failure.c\`, \`scaling.c\`, \`solver.c\`, \`violent.c\`, \`kernel.c\`, \`open.c\`, \`smallest.sh\`, \`accuracy.c\`, \`drift.c\`, \`frames.c\`, \`skin.c\`, \`web.c\` with \`web.mjs\`, \`blade.c\`, \`strokes.c\` | the sections above, in this order but for Booleans |"
+    echo "| \`quadrature.c\`, \`stepping.c\`, \`space.c\`, \`thin.c\`, \`shapes.c\`, \`front.c\`, \`table2.c\`, \`conditioning.c\`, \`failure.c\`, \`scaling.c\`, \`solver.c\`, \`violent.c\`, \`kernel.c\`, \`open.c\`, \`smallest.sh\`, \`accuracy.c\`, \`drift.c\`, \`frames.c\`, \`skin.c\`, \`web.c\` with \`web.mjs\`, \`intrinsics.c\` with \`intrinsics.sh\`, \`blade.c\`, \`strokes.c\` | the sections above, in this order but for Booleans |"
     echo "| \`contact.c\` | pieces that press on each other: against closed forms; what a step with contact costs |"
     echo "| \`soak.c\` | 100,000 steps of bodies that are cut, kicked and dropped: no copy may run away |"
     echo "| \`rxfem.h\`, \`rxfem_rules.h\`, \`rxfem_model.h\` | RXFEM (Koschier, Bender, Thuerey 2017), written for the bench |"

@@ -167,6 +167,150 @@ async function checkPaused(page) {
           await page.evaluate("page.trouble"));
 }
 
+// A new body that stands still, of a kind of those in the list
+async function still(page, kind = 0) {
+    if (!await page.evaluate("page.paused")) await page.key(" ", " ");
+    const meshes = await page.evaluate("page.meshes");
+    await page.evaluate(`(s => { s.value = ${kind}; s.onchange(); })(document.getElementById("shape"))`);
+    await until(page, `page.meshes > ${meshes} && page.numbers.steps === 0`);
+}
+
+async function step(page, count, before = () => {}) {
+    const at = (await numbers(page)).steps;
+    for (let i = 1; i <= count; i++) {
+        await before(i);
+        await page.key(".", ".");
+        if (!await until(page, `page.numbers.steps === ${at + i}`)) return;
+    }
+}
+
+// Moves a slider by a key: to its least value, to its greatest
+const slide = async (page, id, key) => {
+    await page.evaluate(`document.getElementById("${id}").focus()`);
+    await page.key(key);
+    await page.evaluate("document.activeElement.blur()");
+};
+
+// The mean of the vertices of the lowest piece
+const lowest = page => page.evaluate(`(() => {
+    const {positions} = page.viewer.frame, pieces = new Map();
+    triangles.fragments.forEach((piece, t) => {
+        if (!pieces.has(piece)) pieces.set(piece, new Set());
+        for (let k = 0; k < 3; k++) pieces.get(piece).add(triangles.triangles[3 * t + k]);
+    });
+    const means = [...pieces.values()].map(of => [0, 1, 2].map(k => [...of].reduce((sum, v) => sum + positions[3 * v + k], 0) / of.size));
+    return means.reduce((a, b) => b[2] < a[2] ? b : a);
+})()`);
+
+async function checkSliders(page) {
+    const count = 12, falls = {};
+    for (const [key, gravity] of [["Home", 0], ["End", 20]]) {
+        await slide(page, "gravity", key);
+        await still(page);
+        await stroke(page, [150, 350], [810, 330]);
+        await until(page, "page.numbers.fragments === 2");
+        const [, , before] = await lowest(page);
+        await step(page, count);
+        falls[gravity] = before - (await lowest(page))[2];
+    }
+    const free = 0.5 * 20 * (count / 60) ** 2;
+    check("without gravity nothing falls", Math.abs(falls[0]) < 1e-3, falls);
+    check("with it a piece falls as far as it should", Math.abs(falls[20] / free - 1) < 0.1, [falls, free]);
+    const sags = [];
+    for (const key of ["", "End"]) {
+        if (key) await slide(page, "young", key);
+        await still(page);
+        const [, , before] = await lowest(page);
+        let most = 0;
+        await step(page, 30, async () => { most = Math.max(most, before - (await lowest(page))[2]); });
+        sags.push(most);
+    }
+    const stiffer = 10 ** (5.7 - 4.4);
+    check("stiffness 20 times as great, a sag so much less", Math.abs(sags[0] / sags[1] / stiffer - 1) < 0.3, [sags, stiffer]);
+    check("the slider says so", await page.evaluate("young()") === Math.round(10 ** 5.7));
+}
+
+// A hand that moves evenly pulls a piece along. Let go, the piece goes on as fast as it was, and comes down on the ground.
+async function checkThrow(page) {
+    await slide(page, "gravity", "Home");
+    await still(page, 1);
+    await page.evaluate("page.viewer.camera.yaw = -Math.PI / 2; page.viewer.camera.pitch = 0.05");
+    await page.key("k", "k");
+    await stroke(page, [100, 290], [860, 290]);
+    check("the slab is sliced", await until(page, "page.numbers.fragments === 2"), await numbers(page));
+    await page.key("h", "h");
+    const start = [480, 330], button = {button: "left", buttons: 1, clickCount: 1}, path = [await lowest(page)];
+    await page.mouse("mousePressed", ...start, button);
+    check("the hand takes hold of it", await until(page, "page.grabbed !== null"));
+    const hand = x => page.evaluate(`(({eye, direction}) => gxMix(eye, 1, direction, depth))(rayAt(${x}, ${start[1]}))`);
+    const follow = async () => path.push(await lowest(page));
+    await step(page, 20, async i => {
+        await page.mouse("mouseMoved", start[0] + 4 * i, start[1], button);
+        await follow();
+    });
+    await follow();
+    const a = await hand(start[0]), b = await hand(start[0] + 4), speed = distance(a, b);
+    const along = i => path[i].reduce((sum, x, k) => sum + (x - path[i - 1][k]) * (b[k] - a[k]), 0) / speed ** 2;
+    const across = i => Math.sqrt(Math.max(0, (distance(path[i], path[i - 1]) / speed) ** 2 - along(i) ** 2));
+    check("the piece goes as fast as the hand, and its way", Math.abs(along(21) - 1) < 0.3 && across(21) < 0.1, [along(21), across(21)]);
+    await page.mouse("mouseReleased", start[0] + 80, start[1], button);
+    await step(page, 6, follow);
+    await follow();
+    check("let go, it flies on", Math.abs(along(28) / along(21) - 1) < 0.15, [along(21), along(28)]);
+    await slide(page, "gravity", "End");
+    const before = path[path.length - 1];
+    await step(page, 10);
+    const after = await lowest(page), far = after.reduce((sum, x, k) => sum + (x - before[k]) * (b[k] - a[k]), 0) / speed ** 2;
+    check("falls meanwhile", Math.abs((before[2] - after[2]) / (0.5 * 20 * (10 / 60) ** 2) - 1) < 0.15, [before, after]);
+    check("and not on the spot", Math.abs(far / 10 / along(28) - 1) < 0.15, [far, along(28)]);
+    await page.key(" ", " ");
+    await frames(page, 90);
+    const low = await page.evaluate("Math.min(...page.viewer.frame.positions.filter((x, i) => i % 3 === 2))"), lies = await lowest(page);
+    check("and lands on the ground", low > -0.05 && low < 0.05 && lies[2] < after[2] - 0.2, [low, lies, after]);
+    await look(page, "thrown");
+    await page.key("k", "k");
+    await page.evaluate("at('gravity').value = 9.8; at('gravity').oninput(); at('young').value = 4.4");
+}
+
+// All that the mouse does, by keys
+async function checkKeys(page) {
+    await page.evaluate("document.activeElement.blur()");
+    const seen = new Set();
+    for (let i = 0; i < 16; i++) {
+        await page.key("Tab");
+        seen.add(await page.evaluate("document.activeElement.id || document.activeElement.dataset.tool || document.activeElement.tagName"));
+    }
+    const controls = ["SUMMARY", "knife", "hand", "view", "pause", "new", "open", "shape", "young", "gravity", "wires", "colours"];
+    check("Tab comes to each control", controls.every(name => seen.has(name)), [...seen]);
+    await page.evaluate("document.getElementById('gravity').focus()");
+    const gravity = () => page.evaluate("Number(document.getElementById('gravity').value)"), before = await gravity();
+    await page.key("ArrowLeft");
+    check("arrows move a slider", await gravity() < before, [before, await gravity()]);
+    await page.evaluate("document.activeElement.blur()");
+    await still(page);
+    await page.key("Enter");
+    await until(page, "page.numbers.fragments === 2");
+    await page.evaluate("document.getElementById('new').focus()");
+    await page.key("Enter", "\r");
+    check("Enter presses the button that has the focus", await until(page, "page.numbers.steps === 0 && page.numbers.fragments === 1"));
+    await page.evaluate("document.activeElement.blur()");
+    await page.key("Enter", undefined, {modifiers: 8});
+    check("shift Enter slices down", await until(page, "page.numbers.fragments === 2"), await numbers(page));
+    const yaw = await page.evaluate("page.viewer.camera.yaw");
+    await page.key("ArrowRight");
+    check("arrows turn", await page.evaluate("page.viewer.camera.yaw") !== yaw);
+    const rest = [...await page.evaluate("[...page.viewer.frame.positions]")];
+    for (let i = 0; i < 10; i++) await page.key("ArrowDown", undefined, {modifiers: 8});
+    check("shift arrows take hold", await until(page, "page.grabbed !== null"));
+    await page.key("ArrowDown", undefined, {modifiers: 8});
+    await step(page, 10);
+    const moved = await page.evaluate("[...page.viewer.frame.positions]");
+    check("and pull", Math.max(...moved.map((x, i) => Math.abs(x - rest[i]))) > 0.02);
+    await page.key("Shift");
+    check("until shift is let go", await page.evaluate("page.grabbed === null"));
+    await page.key(" ", " ");
+}
+
 async function checkView(page) {
     const straight = await look(page);
     await page.drag([480, 350], [600, 330], {button: "right", buttons: 2});
@@ -262,6 +406,9 @@ check("the body is there", await until(page, "page.ready && page.frames > 3"), a
 await checkSlices(page);
 await checkHand(page);
 await checkGround(page);
+await checkSliders(page);
+await checkThrow(page);
+await checkKeys(page);
 await checkView(page);
 await checkTouch(page);
 await checkShapes(page);

@@ -116,9 +116,12 @@ export async function openPage(path, {width = 960, height = 640, scale = 1, dark
     page.touch = (type, points) =>
         send("Input.dispatchTouchEvent", {type, touchPoints: points.map(([x, y]) => ({x, y}))});
 
-    page.key = async (key, text = undefined) => {
-        await send("Input.dispatchKeyEvent", {type: "keyDown", key, text});
-        await send("Input.dispatchKeyEvent", {type: "keyUp", key});
+    // Controls know keys that have a name by their codes.
+    const codes = {Tab: 9, Enter: 13, " ": 32, End: 35, Home: 36, ArrowLeft: 37, ArrowUp: 38, ArrowRight: 39, ArrowDown: 40};
+    page.key = async (key, text = undefined, more = {}) => {
+        const event = {key, windowsVirtualKeyCode: codes[key], ...more};
+        await send("Input.dispatchKeyEvent", {type: "keyDown", text, ...event});
+        await send("Input.dispatchKeyEvent", {type: "keyUp", ...event});
     };
 
     page.close = async () => {

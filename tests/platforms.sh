@@ -1,8 +1,9 @@
 #!/bin/sh
 # platforms.sh [DIR] - the library on other machines, built by cross compilers and run by emulators: does it decide there as it does here?
 # On each that runs: hashes of cuts (gxcut) and of Booleans of surfaces (hash_boolean.c), cases that once failed and random cases
-# (fuzz.c), the demo's 36 sticks in motion, and bodies saved there go on here and the other way round (exchange.c; not where the
-# order of bytes is another). Where nothing runs programs, they are built only; by Microsoft's rules the headers are compiled only.
+# (fuzz.c), the demo's 36 sticks in motion, the clock and files that replace others (system.c), and bodies saved there go on here and
+# the other way round (exchange.c; not where the order of bytes is another). Where nothing runs programs, they are built only; by
+# Microsoft's rules the headers are compiled only.
 # Prints a line per platform and `N passed, N failed`; what cannot be installed or built here is left out, and said.
 # JOBS=N: platforms at a time (2). CASES=N: random cases in each (2000). PLATFORMS=: those to try (all)
 set -u
@@ -29,14 +30,12 @@ s390x|s390x-linux-gnu-gcc -static|qemu-s390x-static|S/390, the highest byte firs
 END
 }
 
-programs="gxcut hash_boolean fuzz exchange"
-
 # Programs are built without the library's flags, so that errors are the library's.
 build() { # NAME COMPILER...
     base=$dir/$1
     shift
     "$@" -std=c99 -w -O2 -I. -c "$dir/library.c" -o "${base}_library.o" || return
-    for source in examples/gxcut tests/hash_boolean tests/fuzz tests/exchange; do
+    for source in examples/gxcut tests/hash_boolean tests/fuzz tests/exchange tests/system; do
         "$@" -std=c99 -w -O1 -DGXFEM_LINKED $source.c "${base}_library.o" -o "${base}_$(basename $source).exe" -lm || return
     done
 }
@@ -53,6 +52,7 @@ run() {
     # shellcheck disable=SC2086
     $with "${base}_gxcut.exe" cube5 $sticks --fix 'z<0.001' --stretch 1.5,1.5,1.5 --young 1e5 --dt 0.01 --frames 20 --quiet \
         --out "${base}_frames" --report "${base}_demo.json" 2>&1 | tr -d '\r' >"${base}_demo.out"
+    $with "${base}_system.exe" "${base}_files" 2>&1 | tr -d '\r' >"${base}_system.out"
     $with "${base}_exchange.exe" write "${base}_saved" 2>&1 | tr -d '\r' >"${base}_exchange.out"
 }
 
@@ -83,6 +83,7 @@ for number in $(seq 0 $((jobs - 1))); do worker "$number" & done
 wait
 
 no_failure() { grep -q '^[0-9]* files, 0 failed$' "$dir/$1_corpus.out"; }
+is_right() { grep -q '^0 failed$' "$dir/$1_system.out"; }
 falls_apart() { grep -q '"fragments": *36\b' "$dir/$1_demo.json"; }
 is_built() { [ -f "$dir/$1.built" ]; }
 # What native finds in the platform's file is what it finds in its own, and the platform finds the same in the native one.
@@ -103,6 +104,7 @@ while IFS='|' read -r platform compiler runner title; do
     judge "$platform" "$title: the same topology, $(sed -n 5p "$dir/$platform.out" 2>/dev/null | cut -d ';' -f 1)" same "$platform"
     judge "${platform}_corpus" "$title: cases that once failed" no_failure "$platform"
     judge "${platform}_demo" "$title: the demo" falls_apart "$platform"
+    judge "${platform}_system" "$title: the clock, files that replace others" is_right "$platform"
     case $platform in
     native) ;;
     s390x) judge "${platform}_exchange" "$title: its saved bodies are refused here" refuses "$platform" ;;

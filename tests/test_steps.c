@@ -1155,6 +1155,26 @@ START_TEST(whoever_tells_copies_tells_the_epoch) {
 }
 END_TEST
 
+static double ticks(void *user) { return *(double *)user += 1; }
+
+/* All seconds of a report are those of the step's own clock, if it has one. The body has none here. */
+START_TEST(a_step_has_its_own_clock) {
+    workload w = grid(2, 2, 2, 5);
+    gx_body *body = body_of(&w);
+    gx_step_desc step = step_of(0.01, -9.81);
+    gxs_step_report report;
+    double now = 0;
+    hold_above(body, 2 - 1e-9);
+    ck_assert(advance(body, &step, 1).seconds == 0);
+    step.clock = ticks;
+    step.clock_user = &now;
+    report = advance(body, &step, 1);
+    ck_assert(report.seconds == now - 1 && report.seconds > report.seconds_linearise + report.seconds_solve);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("steps");
     TCase *tests = tcase_create("steps");
@@ -1180,6 +1200,7 @@ int main(void) {
     tcase_add_test(tests, springs_pull_points_of_the_skin);
     tcase_add_loop_test(tests, names_of_copies_go_stale, 0, 2 * KINDS_OF_NAMES);
     tcase_add_test(tests, whoever_tells_copies_tells_the_epoch);
+    tcase_add_test(tests, a_step_has_its_own_clock);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
 }

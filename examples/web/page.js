@@ -138,19 +138,35 @@ function sliceMiddle(down) {
     }
 }
 
+/* Shift and arrows pull at what is in the middle of the view, until shift is let go. */
+const spot = {x: 0, y: 0};
+function pullBy(right, down) {
+    if (action !== "hand") {
+        action = "hand";
+        spot.x = canvas.clientWidth / 2;
+        spot.y = canvas.clientHeight / 2;
+        grabAt(spot.x, spot.y);
+    }
+    spot.x += 20 * right;
+    spot.y += 20 * down;
+    if (page.grabbed) pullTo(spot.x, spot.y);
+}
+
+const arrow = (right, down) => event => event.shiftKey ? pullBy(right, down) : turn(0.1 * right, -0.1 * down);
 const keys = {
     k: () => choose("knife"), h: () => choose("hand"), v: () => choose("view"), u: undo, n: make, w: wires, c: colours,
     o: () => at("file").click(), " ": pause, ".": once, Enter: event => sliceMiddle(event.shiftKey),
-    ArrowLeft: () => turn(-0.1, 0), ArrowRight: () => turn(0.1, 0), ArrowUp: () => turn(0, 0.1), ArrowDown: () => turn(0, -0.1),
+    ArrowLeft: arrow(-1, 0), ArrowRight: arrow(1, 0), ArrowUp: arrow(0, -1), ArrowDown: arrow(0, 1),
     "+": () => zoom(1.15), "=": () => zoom(1.15), "-": () => zoom(1 / 1.15),
 };
 window.addEventListener("keydown", event => {
     const key = keys[event.key.length === 1 ? event.key.toLowerCase() : event.key];
     if (!key || event.ctrlKey || event.metaKey || event.altKey) return;
-    if (/^(INPUT|SELECT|BUTTON)$/.test(event.target.tagName) && !/^[a-z]$/i.test(event.key)) return;
+    if (/^(INPUT|SELECT|BUTTON)$/.test(event.target.tagName) && (event.key.length > 1 || event.key === " ")) return;
     event.preventDefault();
     key(event);
 });
+window.addEventListener("keyup", event => { if (event.key === "Shift" && pointers.size === 0) finish(); });
 
 /* ---------------------------------------------------------------------------------------------------- >>page */
 
