@@ -5564,9 +5564,12 @@ static void gxsp_share_memory(gxsp_system *system) {
     if (size > system->vectors.shared_room) {
         const size_t room = system->vectors.shared ? gxsp_room(size) : size;
         unsigned char *larger = (unsigned char *)gxsp_grow(&system->pool, system->vectors.shared, 0, room, 1);
-        if (!larger) return;
-        system->vectors.shared = larger;
-        system->vectors.shared_room = room;
+        if (larger) {
+            system->vectors.shared = larger;
+            system->vectors.shared_room = room;
+        } else if (passes.used > system->vectors.shared_room) {
+            return;
+        } /* else passes keep their memory, and the caller learns of the failure from the pool */
     }
     passes.memory = system->vectors.shared;
     passes.used = 0;
