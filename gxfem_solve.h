@@ -9840,18 +9840,6 @@ static void gxsp_renew_nested(gxsp_renewal *update, const gxsp_level *before, co
     gxsp_nested_end(system, update->scratch);
 }
 
-/* Is all below the model as it was? Then no cluster has changed, and no chunk has other coarse nodes. */
-static int gxsp_levels_stay(const gxsp_renewal *update) {
-    const gxsp_system *system = update->system;
-    uint32_t c, i;
-    if (system->affine.count > 0) return 0;
-    for (i = 0; i < system->multigrid.levels[1].n; i++)
-        if (system->multigrid.dirty[i]) return 0;
-    for (c = 0; c < system->mesh.chunk_count; c++)
-        if (system->mesh.chunks[c].pair_count == 0) return 0;
-    return 1;
-}
-
 /* Do coarse numbers serve no longer, so that the next step makes all anew? Springs and contact are no longer known. */
 static int gxsp_coarse_is_old(const gxsp_system *system) {
     return system->coarse.stiffness > 0 || system->coarse.quick || system->coarse.worn || gxsp_coarse_ends(system);
@@ -9890,16 +9878,8 @@ static void gxsp_remake_levels(gxsp_renewal *update) {
 
 /* Brings levels up to date with what updates have touched. */
 static void gxsp_renew_levels(gxsp_renewal *update) {
-    gxsp_system *system = update->system;
-    gxsp_edges_make(system, update->scratch);
-    if (update->scratch->failed) return;
-    if (!gxsp_levels_stay(update)) {
-        gxsp_remake_levels(update);
-        return;
-    }
-    gxsp_count_edges(system);
-    system->multigrid.fits = 1;
-    gxsp_share_memory(system);
+    gxsp_edges_make(update->system, update->scratch);
+    if (!update->scratch->failed) gxsp_remake_levels(update);
 }
 
 /* Makes levels, or brings them up to date, for a solve. linearised: the pass that has made the Hessian. 0: there was no
@@ -13747,11 +13727,10 @@ GXFEM_API gx_result gxs_solver_set_model(gxs_solver *solver, const gxs_model *mo
     system->lasting = &solver->lasting;
     bad = gxsp_system_build(system, &scratch, model, solver);
     gxsp_release_to(&scratch, NULL);
-    if (bad == SIZE_MAX && !scratch.failed && !system->pool.failed && !system->multigrid.pool.failed)
-        gxsp_steps_make(system);
+    if (bad == SIZE_MAX && !scratch.failed && !system->pool.failed) gxsp_steps_make(system);
     if (bad != SIZE_MAX)
         gxsp_fail(failure, GX_ERROR_ARGUMENT, "constraints", bad);
-    else if (scratch.failed || system->pool.failed || system->multigrid.pool.failed)
+    else if (scratch.failed || system->pool.failed)
         gxsp_end(failure, GX_ERROR_MEMORY);
     if (failure->result != GX_OK) {
         gxsp_system_destroy(system);
