@@ -8972,7 +8972,7 @@ static int gxp_is_small(const gx_body *body, uint32_t cell) {
         const double mean = gxp_mass_row(m, i) / mass;
         trace += m[gxp_mass_at[i][i]] / mass - mean * mean;
     }
-    return trace < 0.15 * body->config.speck_reach * body->config.speck_reach;
+    return fmax(trace, 0) < 0.15 * body->config.speck_reach * body->config.speck_reach; /* 0: none is */
 }
 
 /* Parts with a smaller share may make copies weak. */

@@ -9717,7 +9717,8 @@ static uint32_t gxsp_number_dirty(gxsp_renewal *update, uint32_t *forest, uint32
 static void gxsp_drop_left_out(const gxsp_renewal *update) {
     gxsp_level *fine = &update->system->multigrid.levels[0];
     uint32_t i;
-    for (i = 0; i < fine->n && update->system->multigrid.level_count > 0; i++)
+    if (update->system->multigrid.level_count == 0) return;
+    for (i = 0; i < fine->n; i++)
         if (update->touched[i] && gxsp_is_left_out(update->system, i)) {
             memset(fine->parent[i], 0xff, sizeof fine->parent[i]);
             memset(fine->weight[i], 0, sizeof fine->weight[i]);
@@ -9748,8 +9749,7 @@ static int gxsp_block_dirty(const gxsp_system *system, const gxsp_affine_block *
 }
 
 /* Numbers of the coarse levels. Those of entries with dirty nodes come from the Hessian at the state at which the
- * others were made, so that the matrix stays semi-definite. Then dirty chunks are linearised by their own pass again.
- */
+ * others were made, so that the matrix stays semi-definite. Then the step's own pass linearises dirty chunks again. */
 static int gxsp_renew_numbers(const gxsp_renewal *update, const gxsp_level *before, const double *affine,
                               const uint8_t *dirty) {
     gxsp_system *system = update->system;
