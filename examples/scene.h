@@ -130,7 +130,8 @@ typedef struct scene {
     size_t first_copies, cut_triangles;
     scene_memory memory;
     double frame_seconds[SCENE_PHASES], frame_cut, sum[SCENE_PHASES], sum_frames, worst_frame;
-    double solver_start; /* when the solver first looked at the clock in this step; below 0: not yet */
+    uint32_t clock_calls; /* in this step */
+    double solver_start;  /* when the solver first looked at the clock in this step; below 0: not yet */
     uint32_t cut_frames, frames_written;
     gxio_page page;         /* of --format html */
     int has_page, has_mesh; /* the page is open; it has the triangles of the skin */
@@ -910,11 +911,11 @@ static inline void scene_draw_bar(scene *s) {
     s->bar = 1;
 }
 
-/* The solver's clock: when it is first asked, the body has made the solver's model. */
-static inline double scene_solver_clock(void *user) {
+/* The step's clock. The body asks it first; then the solver does, when the body has made the solver's model. */
+static inline double scene_step_clock(void *user) {
     scene *s = (scene *)user;
     const double now = gxio_seconds(NULL);
-    if (s->solver_start < 0.0) s->solver_start = now;
+    if (s->clock_calls++ == 1) s->solver_start = now;
     return now;
 }
 
@@ -924,8 +925,9 @@ static inline void scene_move(scene *s, gx_step_report *report) {
     double *seconds = s->frame_seconds;
     gx_result result;
     memset(report, 0, sizeof *report);
-    s->step.clock = scene_solver_clock;
+    s->step.clock = scene_step_clock;
     s->step.clock_user = s;
+    s->clock_calls = 0;
     s->solver_start = -1.0;
     result = gx_body_step(s->body, &s->step, report, &s->failure);
     if (result != GX_OK && s->out) scene_finish_frames(s); /* what there is can be looked at */
