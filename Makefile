@@ -452,10 +452,10 @@ run-bench-web: $(BUILD)/bench/web $(web_clang_native) $(web_musl_native)
 	    $(web_clang_native:%="$(newest_clang) -O2=%") $(web_musl_native:%="gcc -O2 musl=%") $(BENCH)
 
 # Builds of one program that differ in where vectors and wide products come from
-$(BUILD)/bench/intrinsics: tests/workloads.h tests/oracle.h tests/rational.h
+$(BUILD)/bench/intrinsics: tests/operand.h tests/workloads.h tests/oracle.h tests/rational.h
 $(BUILD)/bench/intrinsics_yes: vectors = -DGXFEM_INTRINSICS
 $(BUILD)/bench/intrinsics_plain: vectors = -DGXFEM_SCALAR -U__SIZEOF_INT128__
-$(BUILD)/bench/intrinsics_yes $(BUILD)/bench/intrinsics_plain: bench/intrinsics.c tests/workloads.h $(wildcard bench/*.h) $(headers)
+$(BUILD)/bench/intrinsics_yes $(BUILD)/bench/intrinsics_plain: bench/intrinsics.c tests/operand.h tests/workloads.h $(wildcard bench/*.h) $(headers)
 	@mkdir -p $(@D)
 	@$(CC) $(bench_standard) $(WARNINGS) -O2 -Wno-unknown-pragmas $(vectors) $< -o $@ $(LDFLAGS) -lm
 

@@ -11,6 +11,7 @@
 #define BENCH           "intrinsics"
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
+#include "../tests/operand.h"
 #include "../tests/workloads.h"
 #include "block.h"
 #include "clock.h"
@@ -87,17 +88,6 @@ static double cuts(uint64_t *hash) {
     return end(body, start, hash);
 }
 
-static gxb_operand operand_of(const wl_surface *s, int operation) {
-    gxb_operand o;
-    memset(&o, 0, sizeof o);
-    o.vertices = s->vertices;
-    o.vertex_count = s->vertex_count;
-    o.triangles = s->triangles;
-    o.triangle_count = s->triangle_count;
-    o.operation = operation;
-    return o;
-}
-
 /* Milliseconds; adds to the hash (FNV-1a) */
 static double boolean(const wl_surface *surfaces, size_t count, int operation, uint64_t *hash) {
     const double start = processor_seconds(NULL);
@@ -107,7 +97,9 @@ static double boolean(const wl_surface *surfaces, size_t count, int operation, u
     size_t i;
     expect(gxb_boolean_create(NULL, &b, NULL) == GX_OK, "no Boolean");
     for (i = 0; i < count; i++) {
-        const gxb_operand o = operand_of(surfaces + i, i == 0 ? GXB_UNION : operation);
+        const wl_surface *from = surfaces + i;
+        const gxb_operand o = operand_from(from->vertices, from->vertex_count, from->triangles, from->triangle_count,
+                                           i == 0 ? GXB_UNION : (uint32_t)operation);
         expect(gxb_boolean_add(b, &o, NULL) == GX_OK, "no operand");
     }
     expect(gxb_boolean_evaluate(b, &r, NULL) == GX_OK, "no result");

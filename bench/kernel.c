@@ -26,6 +26,7 @@
 #define _POSIX_C_SOURCE 200809L
 #define GXFEM_BOOLEAN_IMPLEMENTATION
 #include "../gxfem_boolean.h"
+#include "../tests/operand.h"
 #include "../tests/workloads.h"
 #include "clock.h"
 #include "csv.h"
@@ -187,13 +188,7 @@ static void measure_all(const char *name, gxb_operand *operands, size_t count) {
 }
 
 static gxb_operand operand_of(const wl_surface *s) {
-    gxb_operand o;
-    memset(&o, 0, sizeof o);
-    o.vertices = s->vertices;
-    o.vertex_count = s->vertex_count;
-    o.triangles = s->triangles;
-    o.triangle_count = s->triangle_count;
-    return o;
+    return operand_from(s->vertices, s->vertex_count, s->triangles, s->triangle_count, GXB_UNION);
 }
 
 /* ---- generated ---- */
