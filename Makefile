@@ -401,7 +401,7 @@ $(filter-out %/solver,$(bench_programs)): $(BUILD)/bench/%: bench/%.c $(wildcard
 
 $(BUILD)/bench/space $(BUILD)/bench/thin $(BUILD)/bench/scaling $(BUILD)/bench/open $(BUILD)/bench/shapes: examples/gxio.h examples/gxjson.h
 $(BUILD)/bench/shapes: examples/gxshape.h tests/models.h tests/cell_moments.h tests/workloads.h tests/oracle.h tests/rational.h
-$(BUILD)/bench/kernel: tests/workloads.h tests/oracle.h tests/rational.h
+$(BUILD)/bench/kernel: tests/operand.h tests/workloads.h tests/oracle.h tests/rational.h
 
 $(BUILD)/bench/solver: bench/solver.c $(wildcard bench/*.h) $(headers)
 	@mkdir -p $(@D)
