@@ -136,7 +136,7 @@ for cc in $compilers; do
     job "$cc -std=c99 docs/RECIPES.md" "$cc -std=c99 $warnings -Wno-unused-function -I$headers -fsyntax-only recipes.c"
     for file in "$root"/examples/*.c; do # they include the repository's headers
         [ "$headers" = "$root" ] || break
-        job "$cc -std=c99 examples/$(basename "$file")" "$cc -std=c99 $warnings -fsyntax-only $file"
+        job "$cc -std=c99 examples/$(basename "$file")" "$cc -std=c99 $warnings -I$headers -fsyntax-only $file"
     done
     command -v "$cxx" >/dev/null 2>&1 || continue
     program=readme.$cxx
