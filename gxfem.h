@@ -1720,6 +1720,8 @@ typedef struct gxp_scratch {
     /* >>arrange */
     gxp_keys order;          /* place in the order of insertion, triangle */
     gxp_words near_elements; /* that a triangle may meet */
+    gxp_keys met_elements;   /* each with a triangle that may meet it */
+    gxp_words crowd;         /* triangles of one of them, and room for as many more */
     gxp_words batch;         /* the same of many triangles, see gxp_batch */
     /* >>pinches */
     gxp_words joint_leaves; /* around a node, or of an element */
@@ -2021,6 +2023,7 @@ static const gxp_column gxp_lists[] = {
     GXP_KEYS(scratch.links), GXP_KEYS(scratch.glue), GXP_KEYS(scratch.seams), GXP_WORDS(scratch.cluster),
     GXP_WORDS(scratch.link_first), GXP_WORDS(scratch.narrow), GXP_WORDS(scratch.dead),
     GXP_KEYS(scratch.order), GXP_WORDS(scratch.near_elements), GXP_WORDS(scratch.batch),
+    GXP_KEYS(scratch.met_elements), GXP_WORDS(scratch.crowd),
     GXP_WORDS(scratch.joint_leaves), GXP_WORDS(scratch.joint_edges), GXP_WORDS(scratch.joint_walls),
     GXP_WORDS(scratch.leaf_joints), GXP_KEYS(scratch.joint_cells), GXP_KEYS(scratch.cell_joints),
     GXP_WORDS(scratch.seed_leaves), GXP_WORDS(scratch.flooded), GXP_WORDS(scratch.seeded), GXP_WORDS(scratch.wound),
@@ -3980,6 +3983,44 @@ static uint32_t gxp_curve_place(const gx_body *body, const double x[3]) {
 /* Room is made for at most this many times the items that the rounds before the last one have made. */
 #define GXP_EXPECTED 7u
 
+/* So many triangles in one element, of one in eight, announce a crowd. Elements are then divided until fewer than so
+   many of these begin in each part. */
+#define GXP_CROWD 8u
+#define GXP_FEW   3u
+
+/* Divides elements that many triangles are about to meet. The triangles of the rounds before the last one, `before` at
+   the beginning of scratch.order, tell which these are, and where their triangles are. */
+static gx_result gxp_part_crowds(gxp_cut *cut, const gxp_surface *s, uint32_t before, int scoped) {
+    gx_body *body = cut->body;
+    gxp_scratch *scratch = &body->scratch;
+    gxp_keys *met = &scratch->met_elements;
+    gxp_words *crowd = &scratch->crowd;
+    uint32_t i, k, end;
+    gx_result result = GX_OK;
+    met->count = 0;
+    for (i = 0; before >= GXP_CROWD && i < before && result == GX_OK; i++) {
+        const uint32_t index = GXP_SECOND(scratch->order.data[i]);
+        const double *p[3];
+        gxp_corners_of(s->given, index, p);
+        result = gxp_find_elements(body, p, &scratch->near_elements);
+        for (k = 0; k < scratch->near_elements.count && result == GX_OK; k++)
+            result = gxp_push_key(body, met, scratch->near_elements.data[k], index);
+    }
+    if (result == GX_OK) result = gxp_sort_keys(body, met, 0, met->count);
+    for (i = 0; i < met->count && result == GX_OK; i = end) {
+        const uint32_t element = GXP_FIRST(met->data[i]);
+        for (end = i; end < met->count && GXP_FIRST(met->data[end]) == element; end++) {}
+        if (end - i < GXP_CROWD) continue;
+        crowd->count = 0;
+        for (k = i; k < end && result == GX_OK; k++) result = gxp_push(body, crowd, GXP_SECOND(met->data[k]));
+        if (result == GX_OK) result = gxp_words_room(body, crowd, crowd->count);
+        if (result == GX_OK)
+            result = gxb_complex_part(body->complex, element, s->given->vertices, s->given->triangles, crowd->data,
+                                      crowd->count, GXP_FEW, scoped ? gxp_in_scope : NULL, body);
+    }
+    return result;
+}
+
 /* Inserts the triangles in rounds, each eight times as large as the one before: planes in random order make shallow
    trees. Within a round the triangles follow a curve, so that the data of an element is in the cache for all its
    triangles [Amenta, Choi, Rote, Incremental constructions con BRIO (2003)]. The order is always the same. The last
@@ -4002,6 +4043,7 @@ static gx_result gxp_insert_surface(gxp_cut *cut, gxp_surface *s, int scoped) {
         result = gxp_push_key(body, &scratch->order, round << 27 | place, i);
     }
     if (result == GX_OK) result = gxp_sort_keys(body, &scratch->order, 0, scratch->order.count);
+    if (result == GX_OK) result = gxp_part_crowds(cut, s, before, scoped);
     for (i = 0; i < scratch->order.count && result == GX_OK; i++) {
         if (i == before && before >= 4) {
             const uint32_t times = (scratch->order.count - before) / before;
@@ -20517,6 +20559,8 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
     return gxp_end(failure, result);
 }
 
+#undef GXP_CROWD
+#undef GXP_FEW
 #undef GXP_SEARCH_PART
 #undef GXP_SEARCH_PARTS
 #undef GXP_SEARCH_ROOM

@@ -56,9 +56,11 @@
  *     storage         >>memory (arrays), >>store (points, planes, exact numbers), >>transaction
  *     structure       >>topology (of the mesh), >>access (reading), >>places (which leaf is there), >>split (by a
  *                     plane), >>pairs (of doubles)
- *     a triangle      >>clip, >>walls, >>cover (what is there already), >>rebalance and >>crowds (trees), >>insert
+ *     a triangle      >>clip, >>walls, >>cover (what is there already), >>rebalance and >>crowds (trees), >>insert,
+ *                     >>ahead (many triangles)
  *     questions       >>inside (winding numbers), >>barycentric, >>pullback (of points of space)
- *     less            >>census (what is needed), >>unite (what becomes one), >>compact (the rest goes)
+ *     less            >>census (what is needed), >>surround (boxes), >>unite (what becomes one), >>compact (the
+ *                     rest goes)
  *     bytes           >>save, >>check (what was read), >>load
  *
  * Of Booleans, in the order of the work:
@@ -544,6 +546,13 @@ GXFEM_API gx_result gxb_complex_add_plane(gxb_complex *complex, gxb_triangle *tr
  * allowed(user, leaf) is 0 are left alone; allowed NULL: all may be divided. */
 GXFEM_API gx_result gxb_complex_insert(gxb_complex *complex, gxb_triangle *triangle, uint32_t element,
                                        int (*allowed)(void *user, uint32_t leaf), void *user);
+/* Divides the leaves of an element by planes of no triangle, until fewer than `few` of the listed triangles begin in
+   each, or no plane parts them well. For an element that many triangles are to meet, before they are inserted; a sample
+   of them does. list: their indices, count of them and room for as many more; it comes back in another order. allowed:
+   as for gxb_complex_insert */
+GXFEM_API gx_result gxb_complex_part(gxb_complex *complex, uint32_t element, const double *vertices,
+                                     const uint32_t *triangles, uint32_t *list, uint32_t count, uint32_t few,
+                                     int (*allowed)(void *user, uint32_t leaf), void *user);
 /* For elements that meet in a mesh edge or a node only. Marks the parts of that edge that the triangle covers (their
    wall becomes 1), or the node. *covered becomes 1 if anything is covered, and is left alone otherwise. */
 GXFEM_API gx_result gxb_complex_cover_edge(gxb_complex *complex, gxb_triangle *triangle, uint32_t element,
@@ -4846,21 +4855,28 @@ static int gxbp_median(double *x, uint32_t count, double *median) {
     return gxbp_difference_exponent(x[count - 1], x[0]);
 }
 
-/* median: for each axis, where a plane across it leaves about as many facets on either side, by the first point of each
-   facet's plane. rank: the axes, beginning with the one along which these points are furthest apart. Returns the number
-   of axes along which they are apart at all. */
-static GXBP_COLD int gxbp_medians(gxb_complex *cx, const uint32_t *facets, uint32_t count, double median[3],
-                                  int rank[3]) {
-    const uint32_t step = (count + GXBP_SAMPLE - 1) / GXBP_SAMPLE;
-    double x[3][GXBP_SAMPLE], given[3];
+/* Points of what is to be parted, by axis */
+typedef struct gxbp_sample {
+    double x[3][GXBP_SAMPLE];
+    uint32_t count;
+} gxbp_sample;
+
+/* Every step-th of so many things gives a point. */
+static uint32_t gxbp_sample_step(uint32_t count) { return (count + GXBP_SAMPLE - 1) / GXBP_SAMPLE; }
+
+static void gxbp_add_to_sample(gxbp_sample *sample, const double x[3]) {
+    int k;
+    for (k = 0; k < 3; k++) sample->x[k][sample->count] = x[k];
+    sample->count++;
+}
+
+/* median: for each axis, where a plane across it leaves about as many points on either side. rank: the axes, beginning
+   with the one along which the points are furthest apart. Returns the number of axes along which they are apart at
+   all. Sorts the points. */
+static GXBP_COLD int gxbp_medians(gxbp_sample *sample, double median[3], int rank[3]) {
     int spread[3], k, j, ranks = 0;
-    uint32_t i, n = 0;
-    for (i = 0; i < count; i += step, n++) {
-        gxbp_given(&cx->store, cx->store.planes[cx->facets[facets[i]].plane].def[0], given);
-        for (k = 0; k < 3; k++) x[k][n] = given[k];
-    }
     for (k = 0; k < 3; k++) {
-        spread[k] = gxbp_median(x[k], n, &median[k]);
+        spread[k] = gxbp_median(sample->x[k], sample->count, &median[k]);
         if (spread[k] == -2000) continue;
         for (j = ranks++; j > 0 && spread[rank[j - 1]] < spread[k]; j--) rank[j] = rank[j - 1];
         rank[j] = k;
@@ -4893,6 +4909,13 @@ static GXBP_COLD gx_result gxbp_new_free_plane(gxb_complex *cx, uint32_t element
     return result;
 }
 
+/* The points and planes that were made last go again. */
+static void gxbp_drop_free_plane(gxb_complex *cx, uint32_t points, uint32_t planes) {
+    cx->store.next_name -= cx->store.point_count - points;
+    cx->store.point_count = points;
+    cx->store.plane_count = planes;
+}
+
 /* Does a quarter of the facets at least lie in front of the plane, and a quarter behind it? */
 static int gxbp_plane_parts(gxb_complex *cx, const uint32_t *facets, uint32_t count, const gxbp_splitter *splitter) {
     uint32_t front = 0, behind = 0, i;
@@ -4913,8 +4936,9 @@ static GXBP_COLD gx_result gxbp_divide_crowded(gxb_complex *cx, const gxbp_task 
                    planes = cx->store.plane_count;
     const gxb_leaf l = cx->leaves[leaf];
     uint32_t i, n = 0, *inner;
-    double median[3];
+    double median[3], given[3];
     int rank[3], ranks, k;
+    gxbp_sample sample;
     gxbp_splitter splitter;
     gx_result result = GXBP_RESERVE(&cx->store.allocator, cx, inner_facets, inner_facet, l.facet_count);
     if (result != GX_OK) return result;
@@ -4924,14 +4948,16 @@ static GXBP_COLD gx_result gxbp_divide_crowded(gxb_complex *cx, const gxbp_task 
     if (n < GXBP_MANY_FACETS || n % 8 != 0) return GX_OK;
     memset(&splitter, 0, sizeof splitter);
     splitter.slot = 1;
-    ranks = gxbp_medians(cx, inner, n, median, rank);
+    for (i = sample.count = 0; i < n; i += gxbp_sample_step(n)) {
+        gxbp_given(&cx->store, cx->store.planes[cx->facets[inner[i]].plane].def[0], given);
+        gxbp_add_to_sample(&sample, given);
+    }
+    ranks = gxbp_medians(&sample, median, rank);
     for (k = 0; k < ranks; k++) {
         result = gxbp_new_free_plane(cx, l.element, rank[k], median[rank[k]], &splitter.plane);
         if (result != GX_OK) return result;
         if (gxbp_plane_parts(cx, inner, n, &splitter)) break;
-        cx->store.next_name -= cx->store.point_count - points;
-        cx->store.point_count = points;
-        cx->store.plane_count = planes;
+        gxbp_drop_free_plane(cx, points, planes);
     }
     if (k == ranks) return GX_OK;
     result = gxbp_ready_leaf(cx, leaf, &splitter);
@@ -5222,6 +5248,118 @@ GXFEM_API gx_result gxb_complex_insert(gxb_complex *cx, gxb_triangle *t, uint32_
         else
             result = gxbp_divide_leaf(cx, t, reference >> 1, &task);
     }
+    return result;
+}
+
+/* >>ahead: an element that many triangles are about to meet -------------------------------------------------------- */
+/* In: triangles that are to be inserted, or a sample of them. Out: leaves divided by free planes, until few triangles
+   begin in each. Divided one triangle at a time, leaves are large before they are crowded, and their tree is a spine;
+   here they have no facet of a triangle yet, and the tree is balanced. */
+
+typedef struct gxbp_crowd {
+    const double *vertices;    /* x 3 */
+    const uint32_t *triangles; /* x 3 */
+    uint32_t *list;            /* indices of triangles; as many words of room follow */
+} gxbp_crowd;
+
+static const double *gxbp_crowd_corner(const gxbp_crowd *crowd, uint32_t i, int k) {
+    return crowd->vertices + 3 * (size_t)crowd->triangles[3 * (size_t)crowd->list[i] + (size_t)k];
+}
+
+/* Does a quarter of the task's triangles at least lie in front of a plane across an axis, and a quarter behind it? */
+static int gxbp_position_parts(const gxbp_crowd *crowd, const gxbp_task *task, int axis, double position) {
+    uint32_t front = 0, behind = 0, i;
+    for (i = task->first; i < task->first + task->count; i++) {
+        int sides = 0, k;
+        for (k = 0; k < 3; k++)
+            sides |= gxbp_compare_doubles(gxbp_crowd_corner(crowd, i, k)[axis], position) > 0 ? 1 : 2;
+        front += sides == 1;
+        behind += sides == 2;
+    }
+    return front >= task->count / 4 && behind >= task->count / 4;
+}
+
+/* Divides the leaf at the task's place by a free plane that parts the triangles well, if there is one. Then a node is
+   in the leaf's place. */
+static GXBP_COLD gx_result gxbp_part_crowd(gxb_complex *cx, const gxbp_crowd *crowd, const gxbp_task *task,
+                                           uint32_t element) {
+    const uint32_t leaf = *gxbp_reference(cx, task, element) >> 1, points = cx->store.point_count,
+                   planes = cx->store.plane_count;
+    uint32_t i, node;
+    double median[3];
+    int rank[3], ranks, k;
+    gxbp_sample sample;
+    gxbp_splitter splitter;
+    gx_result result = GX_OK;
+    for (i = sample.count = 0; i < task->count; i += gxbp_sample_step(task->count))
+        gxbp_add_to_sample(&sample, gxbp_crowd_corner(crowd, task->first + i, 0));
+    ranks = gxbp_medians(&sample, median, rank);
+    memset(&splitter, 0, sizeof splitter);
+    splitter.slot = 1;
+    for (k = 0; k < ranks; k++) {
+        if (!gxbp_position_parts(crowd, task, rank[k], median[rank[k]])) continue;
+        result = gxbp_new_free_plane(cx, element, rank[k], median[rank[k]], &splitter.plane);
+        if (result != GX_OK) return result;
+        gxbp_forget_signs(&cx->store, 1);
+        if (gxbp_leaf_sides(cx, leaf, &splitter) == 3) break;
+        gxbp_drop_free_plane(cx, points, planes);
+    }
+    if (k == ranks) return GX_OK;
+    result = gxbp_ready_leaf(cx, leaf, &splitter);
+    if (result == GX_OK) gxbp_part_leaf(cx, leaf, &splitter, task, &node);
+    return result;
+}
+
+/* Sends the triangles of the task down by one node, by their first corners. They keep their order. */
+static gx_result gxbp_descend_crowd(gxb_complex *cx, const gxbp_crowd *crowd, const gxbp_task *task, uint32_t count,
+                                    uint32_t node) {
+    uint32_t *list = crowd->list, *spare = crowd->list + count;
+    uint32_t i, front = 0, behind = 0;
+    const gx_result result = GXBP_RESERVE(&cx->store.allocator, cx, tasks, task, 2);
+    if (result != GX_OK) return result;
+    for (i = task->first; i < task->first + task->count; i++) {
+        gxbp_place place;
+        gxbp_place_init(&cx->store, gxbp_crowd_corner(crowd, i, 0), &place);
+        if (gxbp_place_side(&cx->store, &place, cx->nodes[node].plane) < 0)
+            spare[behind++] = list[i];
+        else
+            list[task->first + front++] = list[i];
+    }
+    memcpy(list + task->first + front, spare, behind * sizeof *list);
+    gxbp_push_task(cx, node, 0, task->first, front, 0);
+    gxbp_push_task(cx, node, 1, task->first + front, behind, 0);
+    return GX_OK;
+}
+
+GXFEM_API gx_result gxb_complex_part(gxb_complex *cx, uint32_t element, const double *vertices,
+                                     const uint32_t *triangles, uint32_t *list, uint32_t count, uint32_t few,
+                                     int (*allowed)(void *user, uint32_t leaf), void *user) {
+    gxbp_crowd crowd;
+    gxbp_permit permit;
+    gxbp_task task;
+    uint32_t made = cx->tree_count;
+    gx_result result = gxb_complex_open_element(cx, element);
+    if (result == GX_OK) result = GXBP_RESERVE(&cx->store.allocator, cx, tasks, task, 1);
+    if (result != GX_OK) return result;
+    crowd.vertices = vertices;
+    crowd.triangles = triangles;
+    crowd.list = list;
+    permit.allowed = allowed;
+    permit.user = user;
+    cx->task_count = 0;
+    gxbp_push_task(cx, GXBP_IN_ROOT, 0, 0, count, 0);
+    while (cx->task_count > 0 && result == GX_OK) {
+        uint32_t reference;
+        task = cx->tasks[--cx->task_count];
+        if (task.count < few || task.count < 2) continue;
+        reference = *gxbp_reference(cx, &task, element);
+        if (!(reference & 1) && gxbp_may_reach(cx, &permit, reference >> 1)) {
+            result = gxbp_part_crowd(cx, &crowd, &task, element);
+            reference = *gxbp_reference(cx, &task, element);
+        }
+        if ((reference & 1) && result == GX_OK) result = gxbp_descend_crowd(cx, &crowd, &task, count, reference >> 1);
+    }
+    for (; made < cx->tree_count && result == GX_OK; made++) result = gxbp_grow_tree(cx, made, element);
     return result;
 }
 
@@ -5875,6 +6013,7 @@ typedef struct gxbp_census {
     uint32_t piece_room, round, groups;
     /* trees at work, see >>unite: nodes of one element; pairs of what was united */
     uint32_t *plan, plan_count, plan_room, *pairs, pair_count, pair_room, steps;
+    struct gxbp_surround *surrounds; /* of a leaf */
     uint32_t *list_count, *list_end; /* of a leaf: of its new list of facets */
     size_t pool, exact;              /* words of lists, bytes of exact numbers that stay */
     uint32_t *list;                  /* the new pool */
@@ -6094,6 +6233,68 @@ static void gxbp_count_exact(gxbp_census *c) {
         if (c->planes[i] != GXB_NONE) c->exact += gxbp_exact_size(store->planes[i].exact);
 }
 
+/* >>surround: boxes around leaves ---------------------------------------------------------------------------------- */
+/* In: a leaf and a plane. Out: the side on which the leaf lies, where its box tells that. Each box is made once. The
+   planes of a crowd of leaves are asked about thousands of others, and pass far away from nearly all. */
+
+/* A box around a leaf: its middle and half its size. half[0] < 0: not made yet */
+typedef struct gxbp_surround {
+    double middle[3], half[3];
+} gxbp_surround;
+
+/* Widens the box to the balls of a facet's points, low in middle and high in half. Returns the largest of their errors
+   and the one before. */
+static GXBP_COLD double gxbp_widen_surround(const gxb_complex *cx, uint32_t facet, double error, gxbp_surround *box) {
+    const gxb_facet *f = &cx->facets[facet];
+    uint32_t i;
+    int k;
+    if (f->child != GXB_NONE)
+        return gxbp_widen_surround(cx, f->child + 1, gxbp_widen_surround(cx, f->child, error, box), box);
+    for (i = 0; i < f->loop_count; i++) {
+        const gxb_ball *ball = &cx->store.points[gxbp_edge_start(cx, cx->pool[f->loop + i])].ball;
+        if (ball->error > error) error = ball->error;
+        for (k = 0; k < 3; k++) {
+            if (ball->x[k] < box->middle[k]) box->middle[k] = ball->x[k];
+            if (ball->x[k] > box->half[k]) box->half[k] = ball->x[k];
+        }
+    }
+    return error;
+}
+
+static const gxbp_surround *gxbp_leaf_surround(gxbp_census *c, uint32_t leaf) {
+    const gxb_complex *cx = c->cx;
+    const gxb_leaf *l = &cx->leaves[leaf];
+    gxbp_surround *box = &c->surrounds[leaf];
+    double error = 0;
+    uint32_t i;
+    int k;
+    if (!(box->half[0] < 0)) return box;
+    for (k = 0; k < 3; k++) {
+        box->middle[k] = GXBP_NO_BALL;
+        box->half[k] = -GXBP_NO_BALL;
+    }
+    for (i = 0; i < l->facet_count; i++) error = gxbp_widen_surround(cx, cx->pool[l->facets + i], error, box);
+    for (k = 0; k < 3; k++) {
+        const double low = box->middle[k], high = box->half[k];
+        box->middle[k] = gxbp_fence(0.5 * low + 0.5 * high);
+        box->half[k] = 0.5 * (high - low) + 8 * GXBP_U * (gxbp_abs(low) + gxbp_abs(high)) + error + GXBP_TINY;
+    }
+    return box;
+}
+
+/* The side of a plane on which the leaf's box lies for certain: 1 in front, 2 behind; 3: none is certain */
+static int gxbp_surround_sides(const gxbp_surround *box, const gxb_plane_filter *f) {
+    gxb_ball middle;
+    double bound, value, reach = 0;
+    int k, sign;
+    memcpy(middle.x, box->middle, sizeof middle.x);
+    middle.error = 0;
+    value = gxbp_filter_side(&middle, f, &bound);
+    for (k = 0; k < 3; k++) reach += (gxbp_abs(f->n[k]) + f->error) * box->half[k];
+    sign = gxbp_filter_sign(value, bound + reach * (1 + 16 * GXBP_U));
+    return sign > 0 ? 1 : sign < 0 ? 2 : 3;
+}
+
 /* >>unite: leaves, facets and edges that are one without what has gone --------------------------------------------- */
 /* Planes of cuts divide the material beyond what they cut, and outlast it. In: a census. Out: the trees without the
    planes that bound nothing any more, and which leaves, facets and edges become one. Leaves of one cell become one if
@@ -6149,7 +6350,10 @@ static GXBP_COLD int gxbp_set_sides(gxbp_census *c, uint32_t set, const gxbp_spl
     int sides;
     if (c->steps == 0) return 3;
     c->steps--;
-    if (set < c->cx->leaf_count) return gxbp_leaf_sides(c->cx, set, splitter);
+    if (set < c->cx->leaf_count) {
+        sides = gxbp_surround_sides(gxbp_leaf_surround(c, set), &c->cx->store.planes[splitter->plane].filter);
+        return sides != 3 ? sides : gxbp_leaf_sides(c->cx, set, splitter);
+    }
     sides = gxbp_set_sides(c, gxbp_set_part(c, set, 0), splitter);
     return sides == 3 ? 3 : sides | gxbp_set_sides(c, gxbp_set_part(c, set, 1), splitter);
 }
@@ -6365,10 +6569,17 @@ static int gxbp_renew_tree(gxbp_census *c, uint32_t element, int merge) {
     return 0;
 }
 
-static void gxbp_renew_trees(gxbp_census *c) {
-    uint32_t e;
-    for (e = 0; e < c->cx->element_count; e++)
-        if ((c->elements[e] & GXBP_PINNED) || !gxbp_renew_tree(c, e, 1)) gxbp_renew_tree(c, e, 0);
+static gx_result gxbp_renew_trees(gxbp_census *c) {
+    const gx_allocator *a = &c->cx->store.allocator;
+    const size_t size = c->cx->leaf_count * sizeof *c->surrounds;
+    uint32_t i;
+    c->surrounds = (gxbp_surround *)gxbp_allocate(a, size);
+    if (c->surrounds == NULL) return GX_ERROR_MEMORY;
+    for (i = 0; i < c->cx->leaf_count; i++) c->surrounds[i].half[0] = -1;
+    for (i = 0; i < c->cx->element_count; i++)
+        if ((c->elements[i] & GXBP_PINNED) || !gxbp_renew_tree(c, i, 1)) gxbp_renew_tree(c, i, 0);
+    gxbp_release(a, c->surrounds, size);
+    return GX_OK;
 }
 
 /* --- facets --- */
@@ -6988,8 +7199,8 @@ static gx_result gxbp_take_census(gxbp_census *c, const uint8_t *pinned, const u
     result = gxbp_write_loops(c);
     if (result != GX_OK) return result;
     gxbp_mark_bounds(c, kinds);
-    gxbp_renew_trees(c);
-    result = gxbp_unite_polygons(c);
+    result = gxbp_renew_trees(c);
+    if (result == GX_OK) result = gxbp_unite_polygons(c);
     if (result != GX_OK) return result;
     gxbp_unite_edges(c);
     gxbp_restore_whole(c);

@@ -1305,6 +1305,9 @@ namespace Gxfem {
         public static extern IntPtr gxb_complex_origin(IntPtr complex);
 
         [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
+        public static extern gx_result gxb_complex_part(IntPtr complex, uint element, IntPtr vertices, IntPtr triangles, IntPtr list, uint count, uint few, IntPtr allowed, IntPtr user);
+
+        [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
         public static extern IntPtr gxb_complex_plane(IntPtr complex, uint plane);
 
         [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]

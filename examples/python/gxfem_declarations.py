@@ -1333,6 +1333,7 @@ FUNCTIONS = {
     'gxb_complex_node_count': (c_uint32, [POINTER(gxb_complex)]),
     'gxb_complex_open_element': (c_int, [POINTER(gxb_complex), c_uint32]),
     'gxb_complex_origin': (POINTER(c_double), [POINTER(gxb_complex)]),
+    'gxb_complex_part': (c_int, [POINTER(gxb_complex), c_uint32, POINTER(c_double), POINTER(c_uint32), POINTER(c_uint32), c_uint32, c_uint32, CFUNCTYPE(c_int, c_void_p, c_uint32), c_void_p]),
     'gxb_complex_plane': (POINTER(gxb_cplane), [POINTER(gxb_complex), c_uint32]),
     'gxb_complex_point': (POINTER(gxb_cpoint), [POINTER(gxb_complex), c_uint32]),
     'gxb_complex_point_count': (c_uint32, [POINTER(gxb_complex)]),
