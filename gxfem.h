@@ -12888,8 +12888,24 @@ static void gxp_move_surface(gx_body *body, const gxp_touch_surface *s, int anew
     }
 }
 
+/* Is a vertex the same material as a place on a facet: do the same copies move both, with the same weights? */
+static int gxp_is_same_material(const gxp_touch_surface *s, const gxp_touch_vertex *v, const gxp_touch_facet *f,
+                                const double share[3]) {
+    int n, i, m;
+    for (n = 0; n < 4 && v->weights[n] > 0; n++) {
+        double weight = v->weights[n];
+        for (i = 0; i < 3; i++) {
+            const gxp_touch_vertex *w = &s->vertices[f->vertex[i]];
+            for (m = 0; m < 4 && w->weights[m] > 0; m++)
+                if (w->copies[m] == v->copies[n]) weight -= share[i] * w->weights[m];
+        }
+        if (fabs(weight) > GXP_TOUCH_BEHIND) return 0;
+    }
+    return 1;
+}
+
 /* Is what is between a vertex and a facet the piece itself? They were near each other at rest, and did not face each
-   other, or the vertex was behind the facet. */
+   other, or the vertex was behind the facet, or is on it: where two sides of a wedge meet. */
 static int gxp_is_thickness(const gxp_touch_surface *s, const gxp_touch_vertex *v, const gxp_touch_facet *f,
                             const double share[3], double reach) {
     double d[3], n[3], unit[3];
@@ -12901,7 +12917,7 @@ static int gxp_is_thickness(const gxp_touch_surface *s, const gxp_touch_vertex *
     if (gxp_dot(d, d) > 4 * reach * reach) return 0;
     gxp_facet_normal(s, f, n);
     return !gxp_unit(n, unit) || gxp_dot(v->normal, unit) > -GXP_TOUCH_FACING ||
-           gxp_dot(d, unit) < -GXP_TOUCH_BEHIND * v->size;
+           gxp_dot(d, unit) < -GXP_TOUCH_BEHIND * v->size || gxp_is_same_material(s, v, f, share);
 }
 
 /* How far beside a facet a vertex may be if it has no gap, m */
