@@ -14,11 +14,10 @@
                  ground at the end, in h, by examples/gxoverlap.h, which shares nothing with contact; asleep_s: after
                  so long nothing moved any more (empty: it did at the end)
        flight    of the same: the deepest on the way, in h
-       hertz     a rigid ball on an elastic half-space: force, of 4/3 E / (1 - v^2) sqrt(R) depth^1.5; parameter: elements
-                 along the radius of the contact. balls: two elastic balls in one body, likewise
-       cost      a block cut into pieces by leaning planes; parameter: pieces. ms, first_ms: processor time of a step,
-                 mean and the first one after the cut; apart_ms: without the linear algebra; the same with contact
-                 off. figure: a step with contact, of one without */
+       hertz     a rigid ball on an elastic half-space: force, of 4/3 E / (1 - v^2) sqrt(R) depth^1.5; parameter:
+   elements along the radius of the contact. balls: two elastic balls in one body, likewise cost      a block cut into
+   pieces by leaning planes; parameter: pieces. ms, first_ms: processor time of a step, mean and the first one after the
+   cut; apart_ms: without the linear algebra; the same with contact off. figure: a step with contact, of one without */
 #define _POSIX_C_SOURCE 200112L
 #define BENCH           "contact"
 #define GXFEM_IMPLEMENTATION

@@ -1,7 +1,7 @@
-/* pile: a bunny is diced in the air by planes that lean, falls on the ground and comes to rest as a pile.
+/* pile: a ball is diced into 60 pieces by planes that lean, falls on the ground and comes to rest as a pile.
 
-   The small scene dices a ball. The pieces touch from the very frame of the cut on: their faces have no gap. Nothing slows them down but friction;
-   what no longer moves falls asleep. */
+   The pieces touch from the very frame of the cut on: their faces have no gap. Nothing slows them down but friction;
+   what no longer moves falls asleep. --mesh dices another shape, what was along its y upright. */
 #include "scene.h"
 
 #include "touching.h"
@@ -47,7 +47,7 @@ static void dice(scene *s, const uint32_t parts[3]) {
     for (i = 0; i < count; i++) scene_drop_sheet(&planes[i]);
 }
 
-/* What was along y stands upright. */
+/* What was along y is upright then. */
 static void stand(scene *s) {
     size_t i;
     for (i = 0; i < s->mesh.node_count; i++) {
@@ -60,14 +60,14 @@ static void stand(scene *s) {
 
 int main(int argc, char **argv) {
     const scene_desc desc = {.name = "pile",
-                             .about = "A bunny is diced, falls on the ground and comes to rest as a pile.",
-                             .mesh = "bunny:0.0115",
+                             .about = "A ball is diced, falls on the ground and comes to rest as a pile.",
+                             .mesh = "ball:0.06,0.014",
                              .small_mesh = "ball:0.06,0.024",
                              .any_mesh = 1,
-                             .frames = 480,
+                             .frames = 600,
                              .small_frames = 480,
                              .least_frames = 60};
-    const uint32_t parts[3] = {4, 4, 5}, small_parts[3] = {2, 2, 3};
+    const uint32_t parts[3] = {3, 4, 5}, small_parts[3] = {2, 2, 3};
     const size_t expected = 60, small_expected = 12;
     double low[3], high[3];
     size_t pieces;
@@ -77,7 +77,7 @@ int main(int argc, char **argv) {
     stand(&s);
     scene_scale(&s, 10.0, 10.0, 10.0);
     s.body_desc.poisson = 0.3;
-    s.step.dt = 1.0 / 60.0;
+    s.step.dt = s.small ? 1.0 / 60.0 : 1.0 / 120.0;
     s.step.sleep_speed = 0.05;
     scene_make(&s);
     scene_bounds(&s, low, high);

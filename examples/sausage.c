@@ -46,7 +46,8 @@ static void check_slices(scene *s) {
     uint32_t f, next = 0, order[SLICES + 1];
     for (f = 0; f < s->view.fragment_count && f <= SLICES; f++) { /* as they were in the sausage, the lowest first */
         uint32_t i;
-        for (i = next++; i > 0 && s->view.fragment_center[3 * order[i - 1] + 2] > s->view.fragment_center[3 * f + 2]; i--)
+        for (i = next++; i > 0 && s->view.fragment_center[3 * order[i - 1] + 2] > s->view.fragment_center[3 * f + 2];
+             i--)
             order[i] = order[i - 1];
         order[i] = f;
     }

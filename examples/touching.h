@@ -44,8 +44,8 @@ static inline double touching_depth(scene *s, const touching *on, double toleran
     surface.pieces = s->skin.triangles.fragment;
     surface.triangle_count = s->skin.triangles.triangle_count;
     if (!gxoverlap_make(&forest, &surface)) scene_misuse(s, "overlap", "no memory");
-    depth = s->view.fragment_count > 1 ? gxoverlap_of_pieces(&forest, tolerance).depth
-                                       : gxoverlap_of_itself(&forest).depth;
+    depth =
+        s->view.fragment_count > 1 ? gxoverlap_of_pieces(&forest, tolerance).depth : gxoverlap_of_itself(&forest).depth;
     gxoverlap_release(&forest);
     return fmax(depth, gxoverlap_in_convex(&surface, gxoverlap_from_ground, &on->height, tolerance).depth);
 }
