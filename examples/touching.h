@@ -73,11 +73,15 @@ static inline void touching_check_depths(scene *s, touching *on, double flight, 
                 on->rest / on->size, rest);
 }
 
+static inline void touching_check_above(scene *s, const touching *on) {
+    scene_check(s, touching_lowest(s) > on->height, "the lowest piece's centre is %.4f m above the ground (above 0)",
+                touching_lowest(s) - on->height);
+}
+
 static inline void touching_check_rest(scene *s, const touching *on) {
     scene_check(s, s->report.stop == GXS_STOP_ASLEEP, "the last step: %s (asleep)",
                 s->report.stop == GXS_STOP_ASLEEP ? "asleep" : "awake");
-    scene_check(s, touching_lowest(s) > on->height, "the lowest piece's centre is %.4f m above the ground (above 0)",
-                touching_lowest(s) - on->height);
+    touching_check_above(s, on);
 }
 
 #endif /* TOUCHING_H */
