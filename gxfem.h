@@ -1583,6 +1583,7 @@ typedef struct gxp_touch_surface { /* facets by fragment, then as they lie in sp
     double largest;    /* m: size of the vertices' elements */
     gxp_words guesses; /* of each vertex: the facet that it met when it was sought last, or GXP_NONE */
     gxp_words samples; /* vertices that are, in order of the facets that they are of: near each other, facing alike */
+    gxp_words sides;   /* of tips: tip, vertex of one of its sides; see gxp_add_tips */
 } gxp_touch_surface;
 
 typedef struct gxp_touch_pair {  /* of a step */
@@ -2001,6 +2002,7 @@ static const gxp_column gxp_lists[] = {
     GXP_LIST(touch.surfaces[1].states, touch.surfaces[1].state_capacity, sizeof(gxp_touch_state)),
     GXP_WORDS(touch.surfaces[0].guesses), GXP_WORDS(touch.surfaces[1].guesses),
     GXP_WORDS(touch.surfaces[0].samples), GXP_WORDS(touch.surfaces[1].samples),
+    GXP_WORDS(touch.surfaces[0].sides), GXP_WORDS(touch.surfaces[1].sides),
     GXP_WORDS(touch.crowd),               GXP_WORDS(touch.near), GXP_WORDS(touch.kept_leaves),
     GXP_WORDS(touch.stirred),
     GXP_LIST(touch.known, touch.known_capacity, sizeof(gxp_touch_known)),
@@ -11997,6 +11999,11 @@ GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const do
 #define GXP_TOUCH_EVEN  0.98
 #define GXP_TOUCH_APART 0.5
 #define GXP_TOUCH_SHARE 0.35
+/* A cosine: facets that face a vertex less do not meet it. Places at rest that are less than this apart, in sizes of an
+   element, and weights of copies, are the same. Sides that meet in a tip, at most */
+#define GXP_TOUCH_FACING 0.5
+#define GXP_TOUCH_BEHIND 1e-9
+enum { GXP_TOUCH_SIDES = 16 };
 enum { GXP_TOUCH_INSIDE, GXP_TOUCH_RIM, GXP_TOUCH_CORNER }; /* of a vertex: where it is on an even part of a surface */
 
 /* Releases the arrays of body.skin. */
@@ -12212,7 +12219,89 @@ static gx_result gxp_choose_samples(gx_body *body, gxp_touch_surface *s) {
     return result;
 }
 
-/* Lists the samples by the first facet that each is a corner of. */
+/* Is a vertex the same material as a place between three others: do the same copies move both, by the same weights? */
+static int gxp_is_same_material(const gxp_touch_surface *s, const gxp_touch_vertex *v, const uint32_t corner[3],
+                                const double share[3]) {
+    int n, i, m;
+    for (n = 0; n < 4 && v->weights[n] > 0; n++) {
+        double weight = v->weights[n];
+        for (i = 0; i < 3; i++) {
+            const gxp_touch_vertex *w = &s->vertices[corner[i]];
+            for (m = 0; m < 4 && w->weights[m] > 0; m++)
+                if (w->copies[m] == v->copies[n]) weight -= share[i] * w->weights[m];
+        }
+        if (fabs(weight) > GXP_TOUCH_BEHIND) return 0;
+    }
+    return 1;
+}
+
+/* Lists vertices by the point of the complex at which they are: touch.members. */
+static gx_result gxp_list_points(gx_body *body, const gxp_touch_surface *s) {
+    gxp_keys *members = &body->touch.members;
+    uint32_t i;
+    gx_result result;
+    members->count = 0;
+    result = gxp_keys_room(body, members, 2 * (size_t)s->vertex_count);
+    for (i = 0; i < s->vertex_count && result == GX_OK; i++)
+        members->data[members->count++] = (uint64_t)body->skin.point[i] << 32 | i;
+    return result == GX_OK ? gxp_sort_keys(body, members, 0, members->count) : result;
+}
+
+/* Adds the tip of the sides that are the material of sides[0], if none of them faces where it points: a sample without
+   facets, which presses as they would together. */
+static gx_result gxp_add_tip(gx_body *body, gxp_touch_surface *s, const uint32_t *sides, uint32_t count) {
+    const uint32_t own = s->vertex_count;
+    double sum[3] = {0, 0, 0}, unit[3];
+    gxp_touch_vertex tip = s->vertices[sides[0]];
+    gx_result result;
+    uint32_t i;
+    int k;
+    for (i = 0; i < count; i++)
+        for (k = 0; k < 3; k++) sum[k] += s->vertices[sides[i]].normal[k];
+    if (!gxp_unit(sum, unit)) return GX_OK;
+    for (i = 0; i < count; i++)
+        if (gxp_dot(unit, s->vertices[sides[i]].normal) > GXP_TOUCH_FACING) return GX_OK;
+    memcpy(tip.normal, unit, sizeof unit);
+    tip.stands = own;
+    for (i = 1; i < count; i++) {
+        tip.area += s->vertices[sides[i]].area;
+        tip.layers += s->vertices[sides[i]].layers;
+    }
+    tip.given = tip.layers;
+    result = gxp_reserve(&body->config.allocator, &s->vertices, sizeof *s->vertices, own, &s->vertex_capacity, 1);
+    if (result == GX_OK) result = gxp_push(body, &s->guesses, GXP_NONE);
+    for (i = 0; i < count && result == GX_OK; i++) {
+        result = gxp_push(body, &s->sides, own);
+        if (result == GX_OK) result = gxp_push(body, &s->sides, sides[i]);
+    }
+    if (result == GX_OK) s->vertices[s->vertex_count++] = tip;
+    return result;
+}
+
+/* Adds samples at sharp tips and edges, which enter what none of their sides faces. */
+static gx_result gxp_add_tips(gx_body *body, gxp_touch_surface *s) {
+    static const double whole[3] = {1, 0, 0};
+    const gxp_keys *members = &body->touch.members;
+    gx_result result = gxp_list_points(body, s);
+    uint32_t first, i, end;
+    s->sides.count = 0;
+    for (first = 0; first < members->count && result == GX_OK; first++) {
+        uint32_t sides[GXP_TOUCH_SIDES], count = 1, corner[3];
+        const gxp_touch_vertex *v = &s->vertices[GXP_SECOND(members->data[first])];
+        sides[0] = corner[0] = corner[1] = corner[2] = GXP_SECOND(members->data[first]);
+        for (i = first; i-- > 0 && GXP_FIRST(members->data[i]) == GXP_FIRST(members->data[first]);)
+            if (gxp_is_same_material(s, &s->vertices[GXP_SECOND(members->data[i])], corner, whole)) count = 0;
+        for (end = first + 1; end < members->count && count > 0 && count < GXP_TOUCH_SIDES &&
+                              GXP_FIRST(members->data[end]) == GXP_FIRST(members->data[first]);
+             end++)
+            if (gxp_is_same_material(s, &s->vertices[GXP_SECOND(members->data[end])], corner, whole))
+                sides[count++] = GXP_SECOND(members->data[end]);
+        if (count > 1 && v->element != GXP_NONE) result = gxp_add_tip(body, s, sides, count);
+    }
+    return result;
+}
+
+/* Lists the samples by the first facet that each is a corner of. Tips have none, and come last. */
 static gx_result gxp_list_chosen(gx_body *body, gxp_touch_surface *s) {
     gxp_words *listed = &body->touch.roles; /* of each vertex: 1 if it is in the list */
     gx_result result = gxp_start_words(body, &s->samples, s->vertex_count);
@@ -12225,6 +12314,11 @@ static gx_result gxp_list_chosen(gx_body *body, gxp_touch_surface *s) {
             if (!listed->data[vertex]) s->samples.data[s->samples.count++] = vertex;
             listed->data[vertex] = 1;
         }
+    for (i = 0; i < s->sides.count && result == GX_OK; i += 2) {
+        const uint32_t tip = s->sides.data[i];
+        if (!listed->data[tip]) s->samples.data[s->samples.count++] = tip;
+        listed->data[tip] = 1;
+    }
     return result;
 }
 
@@ -12242,6 +12336,7 @@ static gx_result gxp_make_surface(gx_body *body, gxp_touch_surface *to) {
     if (result == GX_OK) result = gxp_mark_fragments(body);
     if (result == GX_OK) result = gxp_copy_samples(body, to);
     if (result == GX_OK) result = gxp_choose_samples(body, to);
+    if (result == GX_OK) result = gxp_add_tips(body, to);
     if (result == GX_OK) result = gxp_list_chosen(body, to);
     gxp_release_skin(body);
     body->skin = own;
@@ -12845,18 +12940,15 @@ static int gxp_has_changed(const gxp_touch *t, uint32_t id) {
    plane. Pairs stay what they are within the step, so that its energy is well defined. A pair without load, in front of
    its facet, is there in time for what comes near within the step. */
 
-/* A cosine: facets that face a vertex less do not meet it. */
-#define GXP_TOUCH_FACING 0.5
 /* Of a facet: the height as a share of the longest side below which rounding makes its normal */
 #define GXP_TOUCH_THIN 1e-7
 /* In sizes of an element: how far beside a facet a vertex may be, and one that pressed on a facet before, else those at
    the rim of a face would be lost and found by turns; with a share of its gap. From how far a sample of a facet takes
-   the state of another one; how far behind a facet at rest is a piece's own thickness */
+   the state of another one */
 #define GXP_TOUCH_BESIDE 0.002
 #define GXP_TOUCH_HELD   0.02
 #define GXP_TOUCH_SLANT  0.1
 #define GXP_TOUCH_SAME   0.25
-#define GXP_TOUCH_BEHIND 1e-9
 
 /* Of two numbers the greater one, as one instruction; in loops that become vectors (gxp_choose does not) */
 #if defined(__wasm__) && (!defined(__wasm_simd128__) || defined(GXFEM_SCALAR))
@@ -12928,10 +13020,18 @@ static void gxp_move_surface(gx_body *body, const gxp_touch_surface *s, int anew
         (void)gxp_unit(moved + 9 * (size_t)i + 6, unit);
         memcpy(moved + 9 * (size_t)i + 6, unit, sizeof unit);
     }
+    for (i = 0; i < s->sides.count; i += 2) {
+        double *tip = moved + 9 * (size_t)s->sides.data[i] + 6;
+        const double *side = moved + 9 * (size_t)s->sides.data[i + 1] + 6;
+        stirred[s->sides.data[i]] |= stirred[s->sides.data[i + 1]];
+        for (k = 0; k < 3; k++) tip[k] += side[k];
+        if (i + 2 < s->sides.count && s->sides.data[i + 2] == s->sides.data[i]) continue;
+        if (!gxp_unit(tip, tip)) tip[0] = tip[1] = tip[2] = 0;
+    }
 }
 
 /* Is what is between a vertex and a facet the piece itself? They were near each other at rest, and did not face each
-   other, or the vertex was behind the facet. */
+   other, or the vertex was behind the facet, or is on it: where two sides of a wedge meet. */
 static int gxp_is_thickness(const gxp_touch_surface *s, const gxp_touch_vertex *v, const gxp_touch_facet *f,
                             const double share[3], double reach) {
     double d[3], n[3], unit[3];
@@ -12943,7 +13043,7 @@ static int gxp_is_thickness(const gxp_touch_surface *s, const gxp_touch_vertex *
     if (gxp_dot(d, d) > 4 * reach * reach) return 0;
     gxp_facet_normal(s, f, n);
     return !gxp_unit(n, unit) || gxp_dot(v->normal, unit) > -GXP_TOUCH_FACING ||
-           gxp_dot(d, unit) < -GXP_TOUCH_BEHIND * v->size;
+           gxp_dot(d, unit) < -GXP_TOUCH_BEHIND * v->size || gxp_is_same_material(s, v, f->vertex, share);
 }
 
 /* How far beside a facet a vertex may be if it has no gap, m */
@@ -19464,7 +19564,7 @@ static void gxp_require_true(gxb_stream *s, int holds) {
 }
 static void gxp_pass_word(gxb_stream *s, uint32_t *word) { gxb_stream_pass(s, word, 1, sizeof *word); }
 
-#define GXP_SAVE_VERSION 12u /* raised by every change of the format */
+#define GXP_SAVE_VERSION 13u /* raised by every change of the format */
 #define GXP_BYTE_ORDER   0x01020304u
 
 typedef struct gxp_head {

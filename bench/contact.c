@@ -14,9 +14,10 @@
                  ground at the end, in h, by examples/gxoverlap.h, which shares nothing with contact; asleep_s: after
                  so long nothing moved any more (empty: it did at the end)
        flight    of the same: the deepest on the way, in h
-       cost      a block cut into pieces by leaning planes; parameter: pieces. ms, first_ms: processor time of a step,
-                 mean and the first one after the cut; apart_ms: without the linear algebra; the same with contact
-                 off. figure: a step with contact, of one without */
+       hertz     a rigid ball on an elastic half-space: force, of 4/3 E / (1 - v^2) sqrt(R) depth^1.5; parameter:
+   elements along the radius of the contact. balls: two elastic balls in one body, likewise cost      a block cut into
+   pieces by leaning planes; parameter: pieces. ms, first_ms: processor time of a step, mean and the first one after the
+   cut; apart_ms: without the linear algebra; the same with contact off. figure: a step with contact, of one without */
 #define _POSIX_C_SOURCE 200112L
 #define BENCH           "contact"
 #define GXFEM_IMPLEMENTATION
@@ -263,6 +264,139 @@ static void collide(uint32_t cells, double friction) {
     gx_body_destroy(body);
 }
 
+/* ---- Hertz [Johnson, Contact Mechanics, chapter 4] ---- */
+
+/* What is pressed: parts of half-spaces, boxes of half this edge, in radii of the contact, which is 1 m. They are held
+   all around where the force at a point would move them. Balls are 20 times as large as the contact. */
+static const double hertz_reach = 6, hertz_radius = 20, hertz_young = 1e6, hertz_poisson = 0.3;
+
+/* The i-th of 0 ... count places from 0 to hertz_reach: even up to `fine`, `each` apart, then ever further apart */
+static double graded(uint32_t i, uint32_t even, uint32_t count, double each) {
+    double low = 1, high = 4, at = 0, step;
+    uint32_t k;
+    while (high - low > 1e-12) {
+        const double ratio = 0.5 * (low + high);
+        for (k = even, at = even * each, step = each; k < count; k++) at += step *= ratio;
+        if (at < hertz_reach)
+            low = ratio;
+        else
+            high = ratio;
+    }
+    for (k = 0, at = 0, step = each; k < i; k++) at += k < even ? each : (step *= low);
+    return at;
+}
+
+/* Where the force `push` at the origin, along the third axis into a half-space below it, moves a place [Boussinesq] */
+static void pushed_by(double push, const double x[3], double moved[3]) {
+    const double r = sqrt(x[0] * x[0] + x[1] * x[1]), z = -x[2], far = sqrt(r * r + z * z);
+    const double scale = push * (1 + hertz_poisson) / (2 * 3.14159265358979 * hertz_young);
+    const double out = scale * (r * z / pow(far, 3) - (1 - 2 * hertz_poisson) * r / (far * (far + z)));
+    moved[0] = r > 0 ? out * x[0] / r : 0;
+    moved[1] = r > 0 ? out * x[1] / r : 0;
+    moved[2] = -scale * (z * z / pow(far, 3) + 2 * (1 - hertz_poisson) / far);
+}
+
+/* The nodes and elements of one of two half-spaces, the lower or the upper one; curved: its surface is a ball's. */
+static void fill_half_space(const block_mesh *mesh, uint32_t elements, int upper, double curved, double *positions,
+                            uint32_t *corners) {
+    const uint32_t cells = (uint32_t)mesh->side - 1, half = cells / 2, even = half / 2;
+    const size_t nodes = mesh->side * mesh->side * mesh->side;
+    const double each = (upper ? 0.93 : 1.0) / elements; /* so that nodes do not lie on each other */
+    size_t i, first = upper ? nodes : 0;
+    int k;
+    for (i = 0; i < nodes; i++) {
+        const uint32_t at[3] = {(uint32_t)(i % mesh->side), (uint32_t)(i / mesh->side % mesh->side),
+                                (uint32_t)(i / mesh->side / mesh->side)};
+        double *x = positions + 3 * (first + i);
+        for (k = 0; k < 2; k++)
+            x[k] = at[k] < half ? -graded(half - at[k], even, half, each) : graded(at[k] - half, even, half, each);
+        x[2] = -graded(cells - at[2], half, cells, each);
+        x[2] -= curved * (x[0] * x[0] + x[1] * x[1]) * (1 + x[2] / hertz_reach);
+        if (upper) x[2] = -x[2];
+    }
+    for (i = 0; i < 20 * (size_t)cells * cells * cells; i++) /* a mirror image has two corners exchanged */
+        corners[(upper ? 20 * (size_t)cells * cells * cells : 0) + i] =
+            (uint32_t)(first + mesh->elements[upper && i % 4 > 1 ? i ^ 1 : i]);
+}
+
+static gx_body *make_half_spaces(uint32_t elements, int count) {
+    const uint32_t cells = 4 * elements + 4;
+    block_mesh mesh;
+    gx_body_desc desc;
+    gx_body *body = NULL;
+    double *positions;
+    uint32_t *corners;
+    size_t nodes, tets = 5 * (size_t)cells * cells * cells;
+    int i;
+    expect(block_make_mesh(cells, 0, &mesh) == GX_OK, "no memory");
+    nodes = mesh.side * mesh.side * mesh.side;
+    positions = (double *)malloc((size_t)count * nodes * 3 * sizeof *positions);
+    corners = (uint32_t *)malloc((size_t)count * tets * 4 * sizeof *corners);
+    expect(positions != NULL && corners != NULL, "no memory");
+    for (i = 0; i < count; i++)
+        fill_half_space(&mesh, elements, i, count > 1 ? 0.25 / hertz_radius : 0, positions, corners);
+    memset(&desc, 0, sizeof desc);
+    desc.positions = positions;
+    desc.node_count = (size_t)count * nodes;
+    desc.elements = corners;
+    desc.element_count = (size_t)count * tets;
+    desc.young = hertz_young;
+    desc.poisson = hertz_poisson;
+    desc.density = 1000;
+    expect(gx_body_create(&desc, &body, NULL) == GX_OK, "no body");
+    block_free_mesh(&mesh);
+    free(positions);
+    free(corners);
+    return body;
+}
+
+/* count: half-spaces. One is pressed by a rigid ball of radius R, two that are balls of radius 2 R by each other. */
+static void hertz(uint32_t elements, int count) {
+    const double edge = hertz_reach - 1e-6, depth = 1 / hertz_radius;
+    const double modulus = hertz_young / (1 - hertz_poisson * hertz_poisson) / count;
+    const double push = 4.0 / 3 * modulus * sqrt(hertz_radius) * pow(depth, 1.5);
+    const gx_region sides[6] = {gx_region_half_space(0, -1, -edge), gx_region_half_space(0, 1, edge),
+                                gx_region_half_space(1, -1, -edge), gx_region_half_space(1, 1, edge),
+                                gx_region_half_space(2, -1, -edge), gx_region_half_space(2, 1, edge)};
+    gx_body *body = make_half_spaces(elements, count);
+    gx_step_desc step = falling(100);
+    gx_collider ball = ground_at(hertz_radius - depth, 0);
+    gx_collider_load load;
+    gx_view view;
+    double *targets, deepest, force;
+    size_t i;
+    expect(gx_body_hold(body, sides, 4 + (size_t)count, NULL) == GX_OK, "nothing held");
+    switch_on(body, 0, 0, 0);
+    view = view_of(body);
+    targets = (double *)calloc(view.copy_count, 3 * sizeof *targets);
+    expect(targets != NULL, "no memory");
+    for (i = 0; i < view.copy_count; i++) {
+        const double *x = view.positions + 3 * (size_t)view.copy_node[i];
+        const double own[3] = {x[0], x[1], -fabs(x[2])};
+        if (!view.copy_held[i]) continue;
+        pushed_by(push, own, targets + 3 * i);
+        if (x[2] > 0) targets[3 * i + 2] = -targets[3 * i + 2] - depth;
+    }
+    step.gravity[2] = 0;
+    step.integrator = GXS_STATIC;
+    step.targets = targets;
+    step.epoch = view.epoch;
+    step.newton_iterations = 10;
+    step.cg_tolerance = 1e-5;
+    if (count == 1) {
+        ball.kind = GX_COLLIDER_SPHERE;
+        ball.size[0] = hertz_radius;
+        step.colliders = &ball;
+        step.collider_loads = &load;
+        step.collider_count = 1;
+    }
+    for (i = 0; i < 4; i++) take(body, &step, NULL);
+    contacts_of(body, &deepest, &force);
+    tell(count > 1 ? "balls" : "hertz", elements, (count > 1 ? force : load.force[2]) / push, 1);
+    free(targets);
+    gx_body_destroy(body);
+}
+
 /* How deep pieces are in each other, in themselves or below the ground */
 static double overlap_of(gx_body *body, double ground, double tolerance) {
     gx_skin skin;
@@ -386,6 +520,8 @@ int main(int argc, char **argv) {
     slip(0.005);
     slip(0.0025);
     collide(3, 0.3);
+    for (i = 2; i <= (small ? 2 : 8); i *= 2) hertz((uint32_t)i, 1);
+    for (i = 2; i <= (small ? 2 : 8); i *= 2) hertz((uint32_t)i, 2);
     for (i = 0; i < (small ? 1 : 3); i++) pile(small ? 4 : 8, piles[i], small ? 2 : 4);
     cost(small ? 8 : 20, four, 0.1, small ? 10 : 60);
     cost(small ? 6 : 14, many, 0.02, small ? 10 : 60);

@@ -47,4 +47,7 @@ picture overhang 12 0006 fragment 0 0 --up=+Z --camera-position=4.2,-4.6,2.4 --c
 picture surgeon 20 0010 surface 0 0 --up=+Z --camera-position=-0.25,-0.62,0.4 --camera-focal-point=0.005,-0.05,-0.035 --camera-view-angle=24
 picture organ 5 0022 material 0 0 --up=+Z --camera-position=-0.25,-0.55,0.3 --camera-focal-point=-0.01,-0.04,0.0 --camera-view-angle=21
 picture trainer 15 0024 material 0 0 --up=+Z --camera-position=-0.2,-0.55,0.25 --camera-focal-point=0.0,-0.05,-0.02 --camera-view-angle=26
+picture pile 60 0010 fragment 30 20
+picture lips 15 0003 surface 20 12
+picture sausage 60 0008 fragment 30 15
 exit $failed

@@ -119,6 +119,7 @@ typedef struct scene {
     gxio_surface shape;     /* the closed surface that stands in its place, if it has triangles */
     uint32_t cells;         /* of the shape's grid along its longest side */
     double volume;          /* of the body before any cut, m3 */
+    gx_step_report report;  /* of the last step */
     gx_body_desc body_desc; /* may be changed before scene_make */
     gx_step_desc step;      /* may be changed at any time */
     gx_body *body;
@@ -920,9 +921,10 @@ static inline double scene_step_clock(void *user) {
 }
 
 /* The body's step, and what it took by phase */
-static inline void scene_move(scene *s, gx_step_report *report) {
+static inline void scene_move(scene *s) {
     const double start = gxio_seconds(NULL);
     double *seconds = s->frame_seconds;
+    gx_step_report *report = &s->report;
     gx_result result;
     memset(report, 0, sizeof *report);
     s->step.clock = scene_step_clock;
@@ -957,9 +959,8 @@ static inline void scene_count_frame(scene *s) {
 
 /* Ends a frame: a step by s->step, a look at the body, the frame's file if it is due. */
 static inline void scene_step(scene *s) {
-    gx_step_report report;
     if (s->trace && !s->trace_stream) scene_begin_trace(s);
-    scene_move(s, &report);
+    scene_move(s);
     scene_look(s);
     scene_count_frame(s);
     s->frame++;
@@ -974,16 +975,15 @@ static inline void scene_step(scene *s) {
  * gxs_step_report. */
 static inline double scene_settle(scene *s, double tolerance) {
     const gx_step_desc kept = s->step;
-    gx_step_report report;
     s->step.integrator = GXS_STATIC;
     s->step.dt = 0.0;
     s->step.newton_iterations = 1000;
     s->step.newton_tolerance = tolerance;
-    scene_move(s, &report);
+    scene_move(s);
     s->step = kept;
     scene_look(s);
     memset(s->frame_seconds, 0, sizeof s->frame_seconds);
-    return report.residual;
+    return s->report.residual;
 }
 
 /* ------------------------------------------------------------------------------------------ >>measures */

@@ -68,7 +68,8 @@ gallery() {
     echo "# Scenes"
     echo
     echo "The scenes of the two papers, by their parameters where they give them, and two in which a blade cuts while the body moves"
-    echo "(\`overhang\`, \`surgeon\`), two whose body is made of closed surfaces (\`organ\`, \`trainer\`); one file each in \`examples/\`."
+    echo "(\`overhang\`, \`surgeon\`), two whose body is made of closed surfaces (\`organ\`, \`trainer\`), and three that end in contact"
+    echo "(\`pile\`, \`lips\`, \`sausage\`); one file each in \`examples/\`."
     echo
     gallery "$@"
     echo
@@ -83,7 +84,7 @@ gallery() {
     echo "more than the least possible, which another program counts; volume and mass kept to 1e-12; a watertight surface; deflections"
     echo "equal to brute-force integration in the same space; and checks of its own. \`scene.h\` has what they share, for scenes of your"
     echo "own too: sheets that advance strip by strip, strokes of a blade, times, files, checks; \`slab.h\`: brute-force integration,"
-    echo "locking; \`cheese.h\`: surfaces."
+    echo "locking; \`cheese.h\`: surfaces; \`touching.h\`: the ground, depths of pieces in each other."
     echo "\`gxcut.c\` and \`gxboolean.c\` are the command-line programs, \`gxio.h\` their readers and writers, \`gxshape.h\` their shapes,"
     echo "\`gxoverlap.h\` how deep pieces are in each other, \`gxfailure.h\` their words for a refusal,"
     echo "\`gxjson.h\` and \`gxrunner.h\` what a benchmark asks of \`gxboolean\`."

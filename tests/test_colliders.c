@@ -217,6 +217,69 @@ START_TEST(carry_weight) {
 }
 END_TEST
 
+/* A rigid ball on an elastic half-space, in a block that is held all around where the force at a point moves it: the
+   force is 4/3 E / (1 - v^2) sqrt(R) depth^1.5 [Hertz], with two elements along the radius of the contact, which is 1
+   m. `make bench-contact` refines them. */
+START_TEST(as_hertz_says) {
+    static const double out[7] = {0, 0.5, 1, 1.5, 2.33, 3.71, 6}, in[9] = {0, 0.5, 1, 1.5, 2, 2.65, 3.49, 4.59, 6};
+    const double radius = 20, young = 1e6, poisson = 0.3, depth = 1 / radius, edge = 6 - 1e-6;
+    const double push = 4.0 / 3 * young / (1 - poisson * poisson) * sqrt(radius) * pow(depth, 1.5);
+    const double scale = push * (1 + poisson) / (2 * 3.14159265358979 * young);
+    const gx_region sides[5] = {gx_region_half_space(0, -1, -edge), gx_region_half_space(0, 1, edge),
+                                gx_region_half_space(1, -1, -edge), gx_region_half_space(1, 1, edge),
+                                gx_region_half_space(2, -1, -edge)};
+    workload w = grid(12, 12, 8, 5);
+    gx_collider ball = collider_of(1, GX_COLLIDER_SPHERE, radius, 0, 0, 0, 0, radius - depth);
+    gx_collider_load load;
+    gx_contact_desc contact;
+    gx_body_desc desc;
+    gx_body *body = NULL;
+    gx_step_desc step;
+    gx_view view;
+    double *targets;
+    size_t i;
+    int k;
+    for (i = 0; i < w.node_count; i++) {
+        double *x = w.positions + 3 * i;
+        for (k = 0; k < 2; k++) x[k] = x[k] < 6 ? -out[6 - (int)(x[k] + 0.5)] : out[(int)(x[k] + 0.5) - 6];
+        x[2] = -in[8 - (int)(x[2] + 0.5)];
+    }
+    desc = desc_of(&w);
+    desc.young = young;
+    desc.poisson = poisson;
+    ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
+    ck_assert_int_eq(gx_body_hold(body, sides, 5, NULL), GX_OK);
+    memset(&contact, 0, sizeof contact);
+    ck_assert_int_eq(gx_body_contact(body, &contact, NULL), GX_OK);
+    view = view_of(body);
+    targets = (double *)calloc(view.copy_count, 3 * sizeof *targets);
+    for (i = 0; i < view.copy_count; i++) { /* by the force at a point [Boussinesq] */
+        const double *x = view.positions + 3 * (size_t)view.copy_node[i], z = -x[2];
+        const double r = sqrt(x[0] * x[0] + x[1] * x[1]), far = sqrt(r * r + z * z);
+        if (!view.copy_held[i]) continue;
+        for (k = 0; k < 2 && r > 0; k++)
+            targets[3 * i + (size_t)k] = scale * (z / pow(far, 3) - (1 - 2 * poisson) / (far * (far + z))) * x[k];
+        targets[3 * i + 2] = -scale * (z * z / pow(far, 3) + 2 * (1 - poisson) / far);
+    }
+    memset(&step, 0, sizeof step);
+    step.dt = 100;
+    step.integrator = GXS_STATIC;
+    step.targets = targets;
+    step.epoch = view.epoch;
+    step.newton_iterations = 10;
+    step.cg_tolerance = 1e-5;
+    step.colliders = &ball;
+    step.collider_loads = &load;
+    step.collider_count = 1;
+    for (k = 0; k < 4; k++) take(body, &step);
+    if (getenv("GXFEM_VERBOSE")) printf("Hertz: %.4f of the force\n", load.force[2] / push);
+    ck_assert_double_lt(fabs(load.force[2] / push - 1), 0.05);
+    free(targets);
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
 /* What resists a small move of a collider, when nothing of the body gives way */
 START_TEST(stiffness_by_differences) {
     workload w = grid(3, 3, 2, 6);
@@ -802,6 +865,7 @@ static Suite *suite(void) {
     TCase *tests = tcase_create("colliders");
     tcase_set_timeout(tests, 300);
     ADD_SOME(tests, carry_weight, 5);
+    tcase_add_test(tests, as_hertz_says);
     tcase_add_test(tests, stiffness_by_differences);
     tcase_add_test(tests, static_without_friction);
     tcase_add_loop_test(tests, slides_or_sticks, 0, FEWER > 1 ? 1 : 2);
