@@ -281,7 +281,7 @@ check-settled:
 
 # All but the longest
 sanitize-scenes:
-	@$(MAKE) --no-print-directory -j$(JOBS) scenes SMALL=1 BUILD=$(BUILD)/sanitize CFLAGS="$(sanitizers)" scenes="$(filter-out trainer,$(scenes))"
+	@$(MAKE) --no-print-directory -j$(JOBS) scenes SMALL=1 BUILD=$(BUILD)/sanitize CFLAGS="$(sanitizers)" scenes="$(filter-out trainer pile sausage,$(scenes))"
 
 # By libFuzzer (with sanitizers) if clang has it, starting from the corpus, for SECONDS. Otherwise, or with SEED or CASES, a loop over
 # seeds.
