@@ -759,12 +759,11 @@ extern "C" {
 #define GXSP_LEAP_SUBSTEPS 64
 
 /* Steps by the error asked for. Of a motion of frequency w the midpoint rule's error after the time GXSP_QUALITY_TIME,
- * s, is GXSP_QUALITY_MIDPOINT (w h)^2 (w time + GXSP_QUALITY_MORE), BDF2's likewise, that of the explicit filter by L
- * in place of w, and backward Euler's GXSP_QUALITY_EULER w h: fits to bench/front.c, within a factor of two on most of
+ * s, is GXSP_QUALITY_MIDPOINT (w h)^2 (w time + GXSP_QUALITY_MORE), BDF2's likewise, and backward Euler's
+ * GXSP_QUALITY_EULER w h: fits to bench/front.c, within a factor of two on most of
  * its bodies. Errors of up to GXSP_QUALITY_COARSE begin with four implicit steps, larger ones with two. */
 #define GXSP_QUALITY_TIME     0.33
 #define GXSP_QUALITY_MIDPOINT 0.0275
-#define GXSP_QUALITY_FILTER   0.044
 #define GXSP_QUALITY_BDF2     0.3
 #define GXSP_QUALITY_MORE     3.0
 #define GXSP_QUALITY_EULER    0.4
@@ -782,8 +781,11 @@ extern "C" {
 #define GXSP_WORK_PRODUCT  0.3
 
 /* Parts of a step that are quick, solved to a tolerance t: they err by GXSP_QUALITY_LEFT t^2, up to GXSP_QUALITY_LOOSE,
- * and take about 1 + 0.4 / t iterations (soft accordions of 1,458 to 37,650 unknowns: 0.3 to 1 times that error). Work
- * of a part, and of an iteration. */
+ * and take about 1 + 0.4 / t iterations (soft accordions of 1,458 to 37,650 unknowns: 0.3 to 1 times that error). In
+ * bodies that move by more than a radian in a step, or need several for the error, or that explicit steps without a
+ * filter would divide by more than GXSP_QUALITY_SOFT, what such a solve leaves hides the motion: a bar that needs two
+ * was off by as much as it moves. Accordions need 28 to 89 such substeps. Work of a part, and of an iteration. */
+#define GXSP_QUALITY_SOFT       100.0
 #define GXSP_QUALITY_LEFT       0.3
 #define GXSP_QUALITY_LOOSE      0.6
 #define GXSP_QUALITY_ITERATIONS 12
@@ -13535,6 +13537,14 @@ static double gxsp_quality_time(const gxs_step_desc *step) {
     return step->mass_damping > 0 ? fmin(GXSP_QUALITY_TIME, 2 / step->mass_damping) : GXSP_QUALITY_TIME;
 }
 
+/* Can a step be quick, and is it soft enough for loose solves? */
+static int gxsp_is_soft(const gxsp_system *system, const gxs_step_desc *step) {
+    const gxsp_leap *leap = &system->leap;
+    const double factor = leap->factor > 0 ? leap->factor : GXSP_LEAP_FACTOR;
+    return leap->made == GXSP_LEAP_ALL && gxsp_quick_suits(system, step) &&
+           0.5 * step->dt * sqrt(factor * leap->top) <= GXSP_QUALITY_SOFT;
+}
+
 /* Makes the parts of a plan quick, solved as exactly as the error demands: half of it is theirs. */
 static void gxsp_plan_quick(gxsp_plan *plan, double error) {
     const double tolerance = fmin(sqrt(0.5 * error / GXSP_QUALITY_LEFT), GXSP_QUALITY_LOOSE);
@@ -13571,7 +13581,8 @@ static gxsp_plan gxsp_plan_implicit(const gxs_solver *solver, const gxs_step_des
     plan.cg_tolerance = plan.parts == 1 && !lags ? 1e-1 : 1e-2;
     if (plan.parts > 8) plan.cg_tolerance *= 64.0 / plan.parts / plan.parts;
     plan.work = GXSP_WORK_IMPLICIT * plan.parts + GXSP_WORK_STEP;
-    if (tempo->measures > 0 && gxsp_quick_suits(solver->system, step)) gxsp_plan_quick(&plan, error);
+    if (tempo->measures > 0 && plan.parts == 1 && radians <= 1 && gxsp_is_soft(solver->system, step))
+        gxsp_plan_quick(&plan, error);
     return plan;
 }
 
@@ -13586,7 +13597,7 @@ static gxsp_plan gxsp_plan_explicit(const gxs_solver *solver, const gxs_step_des
         degrees = fmax(1, GXSP_QUALITY_DEGREE - (double)tempo->refused),
                  later = w * gxsp_quality_time(step) + GXSP_QUALITY_MORE, share = w > 0 ? gxsp_tempo_share(tempo) : 1,
                  all = tempo->resist[1] > 0
-                         ? GXSP_QUALITY_FILTER * tempo->resist[0] / tempo->resist[1] * step->dt * step->dt * later *
+                         ? GXSP_QUALITY_MIDPOINT * tempo->resist[0] / tempo->resist[1] * step->dt * step->dt * later *
                                share
                          : GXSP_QUALITY_COARSE * limit * limit / (GXSP_LEAP_DEGREE * GXSP_LEAP_DEGREE),
                  substeps = ceil(fmin(fmax(sqrt(all / error), limit / degrees), limit));
@@ -14120,7 +14131,6 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_LEAP_MASS
 #undef GXSP_QUALITY_TIME
 #undef GXSP_QUALITY_MIDPOINT
-#undef GXSP_QUALITY_FILTER
 #undef GXSP_QUALITY_BDF2
 #undef GXSP_QUALITY_MORE
 #undef GXSP_QUALITY_EULER
@@ -14136,6 +14146,7 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_WORK_IMPLICIT
 #undef GXSP_WORK_STEP
 #undef GXSP_WORK_PRODUCT
+#undef GXSP_QUALITY_SOFT
 #undef GXSP_QUALITY_LEFT
 #undef GXSP_QUALITY_LOOSE
 #undef GXSP_QUALITY_ITERATIONS
