@@ -760,8 +760,8 @@ extern "C" {
 
 /* Steps by the error asked for. Of a motion of frequency w the midpoint rule's error after the time GXSP_QUALITY_TIME,
  * s, is GXSP_QUALITY_MIDPOINT (w h)^2 (w time + GXSP_QUALITY_MORE), BDF2's likewise, and backward Euler's
- * GXSP_QUALITY_EULER w h: fits to bench/front.c, within a factor of two on most of its bodies. Errors of up to
- * GXSP_QUALITY_COARSE begin with four implicit steps, larger ones with two. */
+ * GXSP_QUALITY_EULER w h: fits to bench/front.c, within a factor of two on most of
+ * its bodies. Errors of up to GXSP_QUALITY_COARSE begin with four implicit steps, larger ones with two. */
 #define GXSP_QUALITY_TIME     0.33
 #define GXSP_QUALITY_MIDPOINT 0.0275
 #define GXSP_QUALITY_BDF2     0.3
@@ -779,6 +779,18 @@ extern "C" {
 #define GXSP_WORK_IMPLICIT 50.0
 #define GXSP_WORK_STEP     10.0
 #define GXSP_WORK_PRODUCT  0.3
+
+/* Parts of a step that are quick, solved to a tolerance t: they err by GXSP_QUALITY_LEFT t^2, up to GXSP_QUALITY_LOOSE,
+ * and take about 1 + 0.4 / t iterations (soft accordions of 1,458 to 37,650 unknowns: 0.3 to 1 times that error). In
+ * bodies that move by more than a radian in a step, or need several for the error, or that explicit steps without a
+ * filter would divide by more than GXSP_QUALITY_SOFT, what such a solve leaves hides the motion: a bar that needs two
+ * was off by as much as it moves. Accordions need 28 to 89 such substeps. Work of a part, and of an iteration. */
+#define GXSP_QUALITY_SOFT       100.0
+#define GXSP_QUALITY_LEFT       0.3
+#define GXSP_QUALITY_LOOSE      0.6
+#define GXSP_QUALITY_ITERATIONS 12
+#define GXSP_WORK_QUICK         5.0
+#define GXSP_WORK_ITERATION     4.5
 
 /* The frequency is measured in each implicit step, in each of the GXSP_QUALITY_FIRST first explicit steps, then in one
  * of GXSP_QUALITY_EACH. What was measured is forgotten by 1 / e after four radians, and by GXSP_QUALITY_FORGET powers
@@ -799,10 +811,13 @@ extern "C" {
 #define GXSP_LEAP_ALL    2
 
 /* Quick steps that one linearisation serves at most, for the diagonal; coarse matrices have a life of their own. What a
- * component may be slowed down by if its energy has risen, as a share of its kinetic energy: beyond, the step is not
- * quick. */
-#define GXSP_QUICK_AGE 64
-#define GXSP_QUICK_CUT 0.2
+ * component may be slowed down by if its energy has risen, as a share of its kinetic energy: beyond, less of the
+ * midpoint rule's second half is tried, so many ends in all, or the step is not quick. Then linear systems are solved
+ * to GXSP_QUICK_RETRY at least. */
+#define GXSP_QUICK_AGE    64
+#define GXSP_QUICK_CUT    0.2
+#define GXSP_QUICK_TRIALS 4
+#define GXSP_QUICK_RETRY  0.1
 
 /* Rows in a group of the stiffness bound; divides GXSP_RANGE */
 #define GXSP_LEAP_ROWS 4
@@ -1529,6 +1544,7 @@ typedef struct gxsp_component {
     double limit, ended;
     /* midpoint rule: E at base; E at the middle without drift and E at a trial, both minus base; J */
     double base, low, gain;
+    double reach;          /* quick steps by the midpoint rule: the share of the second half that the end is at */
     double elastic, slack; /* quick steps: elastic energy at the end of the last one, and what E is below its limit; J
                             */
     double drift[3];       /* midpoint rule: translation of the second half, which is not shortened, m */
@@ -10948,8 +10964,7 @@ static int gxsp_coarse_pays(gxsp_system *system, double rate) {
 /* Are the coarse matrices of other steps than this one? */
 static int gxsp_coarse_differs(const gxsp_problem *problem) {
     const gxsp_system *system = problem->system;
-    return system->coarse.rate < problem->rate || system->coarse.rate > problem->rate ||
-           system->coarse.quick != system->state.quick;
+    return system->coarse.rate < problem->rate || system->coarse.rate > problem->rate;
 }
 
 /* The levels for a solve. 0: there was no memory. */
@@ -12655,8 +12670,9 @@ static int gxsp_leap_step(gxsp_problem *problem, const double *displacement, con
  * Backward Euler, BDF2 and the midpoint rule by one linear solve of a few iterations from where inertia leads. Forces
  * and the exact Hessian there come from one pass in single precision (>>strains). The preconditioner is that of
  * earlier steps: its diagonal and coarse matrices age, the Hessian does not. No line search: energies of components at
- * the end are compared with those at the start. One that has gained is slowed down; what gains more than a share of its
- * kinetic energy has left the linear model, and the step is not quick. */
+ * the end are compared with those at the start. One that has gained is slowed down; one that gains more than a share
+ * of its kinetic energy has left the linear model. The midpoint rule then ends nearer to the middle of its step, where
+ * energy is that of backward Euler; if that is too high as well, the step is not quick. */
 
 /* Memory for quick steps. Returns 0 if there is none. */
 static int gxsp_quick_make(gxsp_system *system) {
@@ -12668,13 +12684,17 @@ static int gxsp_quick_make(gxsp_system *system) {
     return !leap->suits || leap->strains;
 }
 
+/* Do body and loads allow quick steps? */
+static int gxsp_quick_suits(const gxsp_system *system, const gxs_step_desc *step) {
+    return gxsp_leap_suits(system) && !system->multigrid.fine && !system->model.volume && !step->targets &&
+           gxsp_point_count(step) == 0;
+}
+
 /* Can this step be quick? */
 static int gxsp_quick_allowed(const gxsp_problem *problem) {
     const gxs_step_desc *step = problem->step;
-    const gxsp_system *system = problem->system;
-    return step->quick > 0 && system->leap.suits && !system->multigrid.fine && !system->model.volume &&
-           step->integrator <= GXS_MIDPOINT && !step->targets && gxsp_point_count(step) == 0 &&
-           system->state.active > 0;
+    return step->quick > 0 && step->integrator <= GXS_MIDPOINT && problem->system->state.active > 0 &&
+           gxsp_quick_suits(problem->system, step);
 }
 
 /* residual = load - inertia - elastic forces, from the slots; 0 where nothing moves */
@@ -12794,12 +12814,13 @@ static int gxsp_quick_solve(gxsp_problem *problem) {
     return 1;
 }
 
-/* Slows components down whose energy at the end is above their limit. 0: one has gained too much. */
-static int gxsp_quick_settle(gxsp_problem *problem, const double *u, double *v) {
+/* Slows components down whose energy at the end is above their limit. 0: one has gained too much; its second half is to
+ * be half as long, or none with `last`. */
+static int gxsp_quick_settle(gxsp_problem *problem, int last, const double *u, double *v) {
     gxsp_system *system = problem->system;
     size_t i, c;
     uint32_t p;
-    int any = 0;
+    int any = 0, settled = 1;
     gxsp_quick_elastic(system, u);
     for (p = 0; p < system->model.component_count; p++)
         system->model.components[p].elastic = system->model.components[p].gain;
@@ -12813,16 +12834,20 @@ static int gxsp_quick_settle(gxsp_problem *problem, const double *u, double *v) 
         if (!gxsp_finite(risen)) return 0;
         if (risen <= unsure) continue;
         component->slack = 0;
-        if (risen > GXSP_QUICK_CUT * component->low) return 0;
+        if (risen > GXSP_QUICK_CUT * component->low) {
+            component->reach *= last ? 0 : 0.5;
+            settled = 0;
+            continue;
+        }
         component->length = sqrt(1 - risen / component->low);
         any = 1;
     }
-    for (i = 0; i < system->model.n && any; i++) {
+    for (i = 0; i < system->model.n && any && settled; i++) {
         const gxsp_component *component = &system->model.components[system->model.component[i]];
         for (c = 0; c < 3 && !system->state.still[i]; c++)
             v[3 * i + c] = component->sum[c] + component->length * (v[3 * i + c] - component->sum[c]);
     }
-    return 1;
+    return settled;
 }
 
 /* Energy of all components at the end, J */
@@ -12834,30 +12859,59 @@ static double gxsp_quick_total(const gxsp_system *system) {
     return sum;
 }
 
+/* x += what each component goes of its way from a to b in the midpoint rule's second half: its reach, but all of the
+ * mean if it is loose. x may be b. */
+static void gxsp_quick_add_way(gxsp_system *system, const double *a, const double *b, double *x) {
+    size_t i, c;
+    gxsp_clear_components(system);
+    for (i = 0; i < system->model.n; i++) {
+        const double mass = system->state.still[i] ? 0 : system->model.lumped[i], *from = a + 3 * i, *to = b + 3 * i;
+        gxsp_add_to_component(system, i, mass * (to[0] - from[0]), mass * (to[1] - from[1]), mass * (to[2] - from[2]));
+    }
+    gxsp_average_components(system, 0);
+    for (i = 0; i < system->model.n; i++) {
+        const gxsp_component *component = &system->model.components[system->model.component[i]];
+        for (c = 0; c < 3 && !system->state.still[i]; c++) {
+            const double way = b[3 * i + c] - a[3 * i + c];
+            x[3 * i + c] += way - (1 - component->reach) * (way - component->sum[c]);
+        }
+    }
+}
+
+/* The end of the step from current: displacement into direction, velocity into residual */
+static void gxsp_quick_end(const gxsp_problem *problem, const double *displacement, const double *velocity) {
+    gxsp_system *system = problem->system;
+    double *ends = system->vectors.direction, *speeds = system->vectors.residual;
+    size_t i;
+    for (i = 0; i < 3 * system->model.n; i++) {
+        ends[i] = system->state.still[i / 3] ? displacement[i] : system->vectors.current[i];
+        speeds[i] = system->state.still[i / 3] ? 0 : problem->speed * (ends[i] - gxsp_mean(problem, displacement, i));
+    }
+    if (problem->step->integrator != GXS_MIDPOINT) return;
+    gxsp_quick_add_way(system, displacement, system->vectors.current, ends);
+    gxsp_quick_add_way(system, velocity, speeds, speeds);
+}
+
 /* The quick step: displacement into direction, velocity into residual. Returns 0 where the step must be a usual one. */
 static int gxsp_quick_step(gxsp_problem *problem, const double *displacement, const double *velocity) {
     gxsp_system *system = problem->system;
-    const int midpoint = problem->step->integrator == GXS_MIDPOINT;
-    double *ends = system->vectors.direction, *speeds = system->vectors.residual;
-    size_t i, count = 3 * system->model.n;
-    int done;
+    const int trials = problem->step->integrator == GXS_MIDPOINT ? GXSP_QUICK_TRIALS : 1;
+    uint32_t p;
+    int solved, done = 0, trial;
     system->state.quick = 1;
     gxsp_choose_leads(problem);
     gxsp_quick_limit(problem, displacement, velocity);
     gxsp_begin(problem, velocity);
     problem->cg_iterations = problem->step->quick;
-    done = gxsp_quick_solve(problem);
-    for (i = 0; i < count && done; i++) {
-        const int still = system->state.still[i / 3];
-        ends[i] = still    ? displacement[i]
-                : midpoint ? 2 * system->vectors.current[i] - displacement[i]
-                           : system->vectors.current[i];
-        speeds[i] =
-            still ? 0 : problem->speed * (ends[i] - gxsp_mean(problem, displacement, i)) - (midpoint ? velocity[i] : 0);
+    solved = gxsp_quick_solve(problem);
+    for (p = 0; p < system->model.component_count; p++) system->model.components[p].reach = 1;
+    for (trial = 1; trial <= trials && solved && !done; trial++) {
+        gxsp_quick_end(problem, displacement, velocity);
+        done = gxsp_quick_settle(problem, trial + 1 >= trials, system->vectors.direction, system->vectors.residual);
     }
-    done = done && gxsp_quick_settle(problem, ends, speeds);
     system->state.quick = 0;
     if (!done) {
+        problem->cg_tolerance = fmin(problem->cg_tolerance, GXSP_QUICK_RETRY);
         problem->cg_iterations = problem->step->cg_iterations ? problem->step->cg_iterations : 1000;
         problem->report.stop = GXS_STOP_BALANCE;
         return 0;
@@ -13366,7 +13420,7 @@ static gx_result gxsp_step_once(gxs_solver *solver, const gxs_step_desc *step, d
 /* What a step by quality is made of */
 typedef struct gxsp_plan {
     gxs_integrator integrator;
-    uint32_t parts, substeps;
+    uint32_t parts, substeps, quick;
     double cg_tolerance;
     double error, work; /* expected; work in evaluations of explicit forces */
 } gxsp_plan;
@@ -13483,6 +13537,23 @@ static double gxsp_quality_time(const gxs_step_desc *step) {
     return step->mass_damping > 0 ? fmin(GXSP_QUALITY_TIME, 2 / step->mass_damping) : GXSP_QUALITY_TIME;
 }
 
+/* Can a step be quick, and is it soft enough for loose solves? */
+static int gxsp_is_soft(const gxsp_system *system, const gxs_step_desc *step) {
+    const gxsp_leap *leap = &system->leap;
+    const double factor = leap->factor > 0 ? leap->factor : GXSP_LEAP_FACTOR;
+    return leap->made == GXSP_LEAP_ALL && gxsp_quick_suits(system, step) &&
+           0.5 * step->dt * sqrt(factor * leap->top) <= GXSP_QUALITY_SOFT;
+}
+
+/* Makes the parts of a plan quick, solved as exactly as the error demands: half of it is theirs. */
+static void gxsp_plan_quick(gxsp_plan *plan, double error) {
+    const double tolerance = fmin(sqrt(0.5 * error / GXSP_QUALITY_LEFT), GXSP_QUALITY_LOOSE);
+    plan->quick = GXSP_QUALITY_ITERATIONS;
+    plan->cg_tolerance = tolerance;
+    plan->error += GXSP_QUALITY_LEFT * tolerance * tolerance;
+    plan->work = (GXSP_WORK_QUICK + GXSP_WORK_ITERATION * (1 + 0.4 / tolerance)) * plan->parts + GXSP_WORK_STEP;
+}
+
 /* The implicit steps for an error, a power of two. They are the midpoint rule's, or BDF2's where sides touch each
  * other, where thin parts follow others (there each change of the midpoint rule's step costs motion), and where
  * vibrations hide that the midpoint rule would keep forever. Motion that would take more than GXS_PARTS steps of a
@@ -13510,6 +13581,8 @@ static gxsp_plan gxsp_plan_implicit(const gxs_solver *solver, const gxs_step_des
     plan.cg_tolerance = plan.parts == 1 && !lags ? 1e-1 : 1e-2;
     if (plan.parts > 8) plan.cg_tolerance *= 64.0 / plan.parts / plan.parts;
     plan.work = GXSP_WORK_IMPLICIT * plan.parts + GXSP_WORK_STEP;
+    if (tempo->measures > 0 && plan.parts == 1 && radians <= 1 && gxsp_is_soft(solver->system, step))
+        gxsp_plan_quick(&plan, error);
     return plan;
 }
 
@@ -13620,7 +13693,7 @@ static gx_result gxsp_take_parts(gxs_solver *solver, const gxs_step_desc *step, 
     uint32_t k;
     size_t i;
     part.quality = 0;
-    part.quick = 0;
+    part.quick = plan->quick;
     part.dt = step->dt / plan->parts;
     part.integrator = plan->integrator;
     part.substeps = plan->substeps;
@@ -13687,7 +13760,7 @@ static gx_result gxsp_step_by_quality(gxs_solver *solver, const gxs_step_desc *s
     report->error = tempo->measures > 0 ? plan.error : 0;
     if (report->seconds > 0) tempo->pace = report->seconds / plan.work;
     if (report->active_unknowns == 0) return GX_OK;
-    if (plan.integrator != GXS_EXPLICIT || tempo->measures < GXSP_QUALITY_FIRST ||
+    if ((plan.integrator != GXS_EXPLICIT && plan.quick == 0) || tempo->measures < GXSP_QUALITY_FIRST ||
         tempo->steps + 1 >= GXSP_QUALITY_EACH)
         gxsp_measure(solver, step, &plan, &parts, displacement, velocity);
     else
@@ -14073,6 +14146,12 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_WORK_IMPLICIT
 #undef GXSP_WORK_STEP
 #undef GXSP_WORK_PRODUCT
+#undef GXSP_QUALITY_SOFT
+#undef GXSP_QUALITY_LEFT
+#undef GXSP_QUALITY_LOOSE
+#undef GXSP_QUALITY_ITERATIONS
+#undef GXSP_WORK_QUICK
+#undef GXSP_WORK_ITERATION
 #undef GXSP_LEAP_FACTOR
 #undef GXSP_LEAP_DEGREE
 #undef GXSP_LEAP_DEGREES
@@ -14084,6 +14163,8 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_LEAP_ALL
 #undef GXSP_QUICK_AGE
 #undef GXSP_QUICK_CUT
+#undef GXSP_QUICK_TRIALS
+#undef GXSP_QUICK_RETRY
 #undef GXSP_LEAP_RAISE
 #undef GXSP_LEAP_LAST
 #undef GXSP_LEAP_ROWS
