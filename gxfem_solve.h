@@ -1680,7 +1680,9 @@ typedef struct gxsp_multigrid {
     uint32_t level_count;           /* 0: there are no levels, or none yet */
     double spacing;                 /* of level 1's lattice, m; 0: there can be no levels */
     uint8_t *dirty;   /* by node of level 1: some of its followers have been touched since the levels were made */
+    gxsp_owned *mark; /* what pool has from here on depends on the pattern of level 1 */
     int fits;         /* the model has not been updated since the levels were made */
+    int joined;       /* level 1 has entries between the sides of pairs */
     int chosen;       /* the preconditioner was chosen by the size of components */
     int used;         /* the levels precondition the solve at work */
     gxsp_fine *fine;  /* block_count: entries of the assembled matrix, levels[0]; NULL: matrix-free */
@@ -4949,6 +4951,46 @@ static void gxsp_nested_pattern(const gxsp_system *system, gxsp_pool *scratch, c
             gxsp_nested_entries(affine->hidden, (uint32_t)(key[k] >> 32), (uint32_t)key[k], list);
 }
 
+/* Coarse nodes, without hidden ones, around the copies of a pair that are on one side by the sign of their weights. At
+ * most as many as bases holds. Returns how many. */
+static uint32_t gxsp_pair_bases(const gxsp_system *system, const gxsp_term *term, int sign, uint32_t *bases) {
+    const gxsp_share *share = system->lasting->share + term->first, *end = share + term->count;
+    uint32_t count = 0, i, k;
+    for (; share < end; share++)
+        for (k = 0; k < 4 && !gxsp_is_hidden(system, share->copy); k++) {
+            const uint32_t parent = system->multigrid.levels[0].parent[share->copy][k];
+            if (sign > 0 ? !(share->weight > 0) : !(share->weight < 0)) continue;
+            for (i = 0; i < count && bases[i] != parent; i++) {}
+            if (parent != GXSP_NONE && i == count) bases[count++] = parent;
+        }
+    return count;
+}
+
+/* Lists the entries of level 1's matrix between the two sides of pairs. */
+static void gxsp_joint_pattern(const gxsp_system *system, gxsp_pool *scratch, gxsp_list *list) {
+    uint32_t *last = (uint32_t *)gxsp_take(scratch, system->multigrid.levels[1].n, sizeof(uint32_t));
+    uint32_t one[4 * GXS_POINT_MOST], other[4 * GXS_POINT_MOST], i, j, e;
+    gxsp_list chain = {NULL, NULL, 0, 0}; /* column, the entry of the same row before it + 1 */
+    size_t t;
+    chain.scratch = scratch;
+    for (t = 0; t < system->lasting->count && !scratch->failed; t++) {
+        const gxsp_term *term = &system->lasting->term[t];
+        const uint32_t some = term->spread > 0 ? gxsp_pair_bases(system, term, 1, one) : 0,
+                       others = some > 0 ? gxsp_pair_bases(system, term, -1, other) : 0;
+        for (i = 0; i < some; i++)
+            for (j = 0; j < others; j++) {
+                const uint32_t row = one[i] < other[j] ? one[i] : other[j],
+                               column = one[i] < other[j] ? other[j] : one[i];
+                for (e = last[row]; e > 0 && chain.pair[e - 1][0] != column; e = chain.pair[e - 1][1]) {}
+                if (e > 0 || row == column) continue;
+                gxsp_list_add(&chain, column, last[row]);
+                if (scratch->failed) return;
+                last[row] = chain.count;
+                gxsp_nested_entries(system->affine.hidden, row, column, list);
+            }
+    }
+}
+
 /* >>pattern: edges of chunks, pattern of level 1 and of the assembled matrix --------------------------------------- */
 
 /* In: chunks and the transfer of level 0. Out: the rows of level 1's matrix, found without an assembled one, and
@@ -5175,6 +5217,7 @@ static void gxsp_first_pattern(gxsp_system *system, gxsp_pool *scratch, const gx
     gxsp_list list;
     memset(&list, 0, sizeof list);
     list.scratch = scratch;
+    system->multigrid.mark = system->multigrid.pool.last;
     for (c = 0; c < system->mesh.chunk_count; c++)
         nodes = system->mesh.chunks[c].node_count > nodes ? system->mesh.chunks[c].node_count : nodes;
     /* four parents to a node */
@@ -5189,6 +5232,7 @@ static void gxsp_first_pattern(gxsp_system *system, gxsp_pool *scratch, const gx
         if (chunk->pair_count > system->multigrid.pairs.most) system->multigrid.pairs.most = chunk->pair_count;
     }
     if (system->affine.count > 0) gxsp_nested_pattern(system, scratch, before ? dirty : NULL, &list);
+    if (system->multigrid.joined && !before) gxsp_joint_pattern(system, scratch, &list);
     if (!scratch->failed)
         gxsp_rows_make(&system->multigrid.pool, scratch, &system->multigrid.levels[1], &list, before, dirty);
 }
@@ -8120,7 +8164,7 @@ static float gxsp_side_of(const gxsp_system *system, const gxsp_share *share, ui
 }
 
 /* What a pair's copies of one sign, or all of them (sign 0), are between coarse functions: nodes of level 1 with the
- * sums of their weights, in the order in which they are met. Returns how many. */
+ * sums of their weights, in the order of their numbers. Returns how many. */
 static uint32_t gxsp_coarse_shares(const gxsp_system *system, const gxsp_share *share, uint32_t count, int sign,
                                    uint32_t *node, float *weight) {
     uint32_t found = 0, i, j, p, parents[16], parent_count;
@@ -8135,34 +8179,38 @@ static uint32_t gxsp_coarse_shares(const gxsp_system *system, const gxsp_share *
             weight[j] += share[i].weight * weights[p];
         }
     }
+    for (i = 1; i < found; i++) {
+        const uint32_t number = node[i];
+        const float sum = weight[i];
+        for (j = i; j > 0 && node[j - 1] > number; j--) node[j] = node[j - 1], weight[j] = weight[j - 1];
+        node[j] = number, weight[j] = sum;
+    }
     return found;
 }
 
-/* Adds factor x a Hessian to an entry of level 1's matrix: where copies are affine, to its part in double precision. */
-static void gxsp_add_coarse(gxsp_system *system, uint32_t entry, float factor, const float *hessian) {
-    static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+/* Adds factor x a block to an entry of level 1's matrix: where copies are affine, to its part in double precision. */
+static inline void gxsp_add_coarse(gxsp_system *system, uint32_t entry, float factor, const float block[9]) {
     int k;
-    for (k = 0; k < 9; k++)
-        if (system->affine.count > 0)
-            system->affine.block[9 * (size_t)entry + (size_t)k] += (double)factor * (double)hessian[full[k]];
-        else
-            system->multigrid.levels[1].block[9 * (size_t)entry + (size_t)k] += factor * hessian[full[k]];
+    if (system->affine.count > 0)
+        for (k = 0; k < 9; k++)
+            system->affine.block[9 * (size_t)entry + (size_t)k] += (double)factor * (double)block[k];
+    else
+        gxsp_add_scaled(factor, block, system->multigrid.levels[1].block + 9 * (size_t)entry);
 }
 
-/* Adds factor x the outer product of weights times a Hessian to level 1's matrix, if that has all the entries it
+/* Adds factor x the outer product of weights times a block to level 1's matrix, if that has all the entries it
  * needs. Returns whether it has. */
 static int gxsp_add_outer(gxsp_system *system, const uint32_t *node, const float *weight, uint32_t count, float factor,
-                          const float *hessian) {
+                          const float block[9]) {
     const gxsp_level *level = &system->multigrid.levels[1];
     uint32_t i, j, entry;
     int adds;
     for (adds = 0; adds < 2; adds++)
         for (i = 0; i < count; i++)
-            for (j = 0; j < count; j++) {
-                if (node[i] > node[j]) continue;
-                entry = gxsp_find_entry(level, node[i], node[j]);
-                if (level->column[entry] != node[j]) return 0;
-                if (adds) gxsp_add_coarse(system, entry, factor * weight[i] * weight[j], hessian);
+            for (j = i, entry = level->start[node[i]]; j < count; j++) {
+                while (entry < level->start[node[i] + 1] && level->column[entry] < node[j]) entry++;
+                if (entry == level->start[node[i] + 1] || level->column[entry] != node[j]) return 0;
+                if (adds) gxsp_add_coarse(system, entry, factor * weight[i] * weight[j], block);
             }
     return 1;
 }
@@ -8171,20 +8219,22 @@ static int gxsp_add_outer(gxsp_system *system, const uint32_t *node, const float
  * it has none between the two sides, twice each side's: (a - b)^2 <= 2 a^2 + 2 b^2; or, where it has not even those, a
  * diagonal that bounds them: (sum w_i x_i)^2 <= sum |w_j| sum |w_i| x_i^2. */
 static void gxsp_coarse_pair(gxsp_system *system, const gxsp_term *term) {
+    static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
     const gxsp_share *share = system->lasting->share + term->first;
     uint32_t node[16 * GXS_POINT_MOST], count, i;
-    float weight[16 * GXS_POINT_MOST];
+    float weight[16 * GXS_POINT_MOST], block[9];
     int sign;
+    for (i = 0; i < 9; i++) block[i] = term->hessian[full[i]];
     count = gxsp_coarse_shares(system, share, term->count, 0, node, weight);
-    if (gxsp_add_outer(system, node, weight, count, 1, term->hessian)) return;
+    if (gxsp_add_outer(system, node, weight, count, 1, block)) return;
     for (sign = -1; sign <= 1; sign += 2) {
         float spread = 0;
         count = gxsp_coarse_shares(system, share, term->count, sign, node, weight);
-        if (gxsp_add_outer(system, node, weight, count, 2, term->hessian)) continue;
+        if (gxsp_add_outer(system, node, weight, count, 2, block)) continue;
         for (i = 0; i < count; i++) spread += fabsf(weight[i]);
         for (i = 0; i < count; i++)
             gxsp_add_coarse(system, gxsp_find_entry(&system->multigrid.levels[1], node[i], node[i]),
-                            2 * spread * fabsf(weight[i]), term->hessian);
+                            2 * spread * fabsf(weight[i]), block);
     }
 }
 
@@ -8256,35 +8306,6 @@ static void gxsp_nested_element(gxsp_system *system, const gxsp_affine_block *bl
             }
         }
     }
-}
-
-/* Springs and contact between coarse functions, where level 1's matrix has an entry for them */
-static void gxsp_nested_term(gxsp_system *system, const gxsp_term *term) {
-    static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-    const gxsp_level *level = &system->multigrid.levels[1];
-    const gxsp_share *share = system->lasting->share + term->first;
-    uint32_t i, j, p, q, rows[16], columns[16], row_count, column_count;
-    float w[16], v[16];
-    int k;
-    if (term->spread > 0) {
-        gxsp_coarse_pair(system, term);
-        return;
-    }
-    for (i = 0; i < term->count; i++)
-        for (j = 0; j < term->count; j++) {
-            row_count = gxsp_nested_parents(system, share[i].copy, rows, w);
-            column_count = gxsp_nested_parents(system, share[j].copy, columns, v);
-            for (p = 0; p < row_count; p++)
-                for (q = 0; q < column_count; q++) {
-                    const double weight = (double)(share[i].weight * w[p]) * (double)(share[j].weight * v[q]);
-                    uint32_t entry;
-                    if (rows[p] > columns[q]) continue;
-                    entry = gxsp_find_entry(level, rows[p], columns[q]);
-                    if (level->column[entry] != columns[q]) continue;
-                    for (k = 0; k < 9; k++)
-                        system->affine.block[9 * (size_t)entry + (size_t)k] += weight * (double)term->hessian[full[k]];
-                }
-        }
 }
 
 /* Row i of the factor in double precision: see gxsp_factor_row */
@@ -8406,7 +8427,7 @@ static int gxsp_nested_numbers(gxsp_system *system, double rate, const uint8_t *
             if (affine->blocks[b].rest.weight[l] > 0 &&
                 (!dirty || gxsp_nested_dirty(system, &affine->blocks[b], l, dirty)))
                 gxsp_nested_element(system, &affine->blocks[b], l, rate, dirty);
-    for (t = 0; t < system->lasting->count && !dirty; t++) gxsp_nested_term(system, &system->lasting->term[t]);
+    for (t = 0; t < system->lasting->count && !dirty; t++) gxsp_coarse_pair(system, &system->lasting->term[t]);
     return gxsp_nested_factor(system, system->multigrid.pairs.local);
 }
 
@@ -9982,6 +10003,16 @@ static void gxsp_renew_levels(gxsp_renewal *update) {
     if (!update->scratch->failed) gxsp_remake_levels(update);
 }
 
+/* Are there levels now that they have been made? If memory has run out, there are none. */
+static int gxsp_keep_levels(gxsp_system *system, const gxsp_pool *scratch) {
+    if (!scratch->failed && !system->pool.failed && !system->multigrid.pool.failed) return 1;
+    gxsp_release_to(&system->multigrid.pool, NULL);
+    system->multigrid.pool.failed = system->pool.failed = 0;
+    system->multigrid.level_count = 0;
+    system->coarse.rate = -1;
+    return 0;
+}
+
 /* Makes levels, or brings them up to date, for a solve. linearised: the pass that has made the Hessian. 0: there was no
  * memory. Then there are no levels, and the next solve makes them. */
 static int gxsp_fit_levels(gxsp_system *system, gxsp_pass *linearised) {
@@ -9997,12 +10028,26 @@ static int gxsp_fit_levels(gxsp_system *system, gxsp_pass *linearised) {
     else
         gxsp_make_levels(system, &scratch);
     gxsp_release_to(&scratch, NULL);
-    if (!scratch.failed && !system->pool.failed && !system->multigrid.pool.failed) return 1;
-    gxsp_release_to(&system->multigrid.pool, NULL);
-    system->multigrid.pool.failed = system->pool.failed = 0;
-    system->multigrid.level_count = 0;
-    system->coarse.rate = -1;
-    return 0;
+    return gxsp_keep_levels(system, &scratch);
+}
+
+/* Level 1 of affine copies with entries between the sides of the present pairs, and with none between those that were.
+ * 0: there was no memory, see gxsp_fit_levels. */
+static int gxsp_join_levels(gxsp_system *system) {
+    gxsp_pool scratch = gxsp_pool_make(&system->pool.allocator);
+    int joins = 0;
+    size_t t;
+    for (t = 0; t < system->lasting->count && !joins; t++) joins = system->lasting->term[t].spread > 0;
+    if (system->affine.count == 0 || !(joins || system->multigrid.joined)) return 1;
+    system->multigrid.joined = joins;
+    gxsp_release_to(&system->multigrid.pool, system->multigrid.mark);
+    gxsp_edges_make(system, &scratch);
+    gxsp_pairs_make(system, &scratch);
+    if (!scratch.failed) gxsp_first_pattern(system, &scratch, NULL, NULL);
+    if (!scratch.failed && !system->multigrid.pool.failed) gxsp_nested_end(system, &scratch);
+    if (!scratch.failed && !system->multigrid.pool.failed) gxsp_levels_end(system);
+    gxsp_release_to(&scratch, NULL);
+    return gxsp_keep_levels(system, &scratch);
 }
 
 /* History of steps, and data that depends on all copies */
@@ -11079,6 +11124,10 @@ static int gxsp_prepare(gxsp_problem *problem) {
     if (!system->multigrid.fine) gxsp_choose_omega(system, problem->rate);
     other = gxsp_coarse_differs(problem);
     if (!other && (problem->exact || !(system->coarse.worn || gxsp_coarse_ends(system)))) return 1;
+    if (!gxsp_join_levels(system)) {
+        problem->starved = 1;
+        return 0;
+    }
     system->coarse.lived = system->coarse.served;
     system->coarse.pace_old = other ? 0 : system->coarse.pace;
     system->coarse.pace = system->coarse.read_nepers = 0;
