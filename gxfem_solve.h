@@ -1696,7 +1696,9 @@ typedef struct gxsp_multigrid {
     uint32_t level_count;           /* 0: there are no levels, or none yet */
     double spacing;                 /* of level 1's lattice, m; 0: there can be no levels */
     uint8_t *dirty;   /* by node of level 1: some of its followers have been touched since the levels were made */
+    gxsp_owned *mark; /* what pool has from here on depends on the pattern of level 1 */
     int fits;         /* the model has not been updated since the levels were made */
+    int joined;       /* level 1 has entries between the sides of pairs */
     int chosen;       /* the preconditioner was chosen by the size of components */
     int used;         /* the levels precondition the solve at work */
     gxsp_fine *fine;  /* block_count: entries of the assembled matrix, levels[0]; NULL: matrix-free */
@@ -4316,17 +4318,19 @@ static void gxsp_mark_still(gxsp_system *system) {
     gxsp_mark_still_blocks(system);
 }
 
-/* The copies that move an element's corner, and their weights: its own copy, or its masters. Returns how many. */
-static int gxsp_corner_masters(const gxsp_system *system, uint32_t copy, uint32_t *masters, float *weights) {
+/* The vectors that move a vector, and their weights: itself, or its masters. Returns how many: up to 4 in chunks, up to
+ * 16 where copies are affine. */
+static int gxsp_masters_of(const gxsp_system *system, uint32_t copy, uint32_t *masters, float *weights) {
     const gxsp_follower *follower;
-    int k, count = 0;
+    uint32_t k;
+    int count = 0;
     if (!gxsp_follows(system, copy)) {
         masters[0] = copy;
         weights[0] = 1;
         return 1;
     }
     follower = &system->model.followers[system->model.follower[copy]];
-    for (k = 0; k < 4; k++) /* what follows as a field is no corner in a chunk */
+    for (k = 0; k < follower->count; k++)
         if (fabs(follower->weight[k]) > 0) {
             masters[count] = follower->master[k];
             weights[count++] = (float)follower->weight[k];
@@ -4963,6 +4967,46 @@ static void gxsp_nested_pattern(const gxsp_system *system, gxsp_pool *scratch, c
             gxsp_nested_entries(affine->hidden, (uint32_t)(key[k] >> 32), (uint32_t)key[k], list);
 }
 
+/* Coarse nodes, without hidden ones, around the copies of a pair that are on one side by the sign of their weights. At
+ * most as many as bases holds. Returns how many. */
+static uint32_t gxsp_pair_bases(const gxsp_system *system, const gxsp_term *term, int sign, uint32_t *bases) {
+    const gxsp_share *share = system->lasting->share + term->first, *end = share + term->count;
+    uint32_t count = 0, i, k;
+    for (; share < end; share++)
+        for (k = 0; k < 4 && !gxsp_is_hidden(system, share->copy); k++) {
+            const uint32_t parent = system->multigrid.levels[0].parent[share->copy][k];
+            if (sign > 0 ? !(share->weight > 0) : !(share->weight < 0)) continue;
+            for (i = 0; i < count && bases[i] != parent; i++) {}
+            if (parent != GXSP_NONE && i == count) bases[count++] = parent;
+        }
+    return count;
+}
+
+/* Lists the entries of level 1's matrix between the two sides of pairs. */
+static void gxsp_joint_pattern(const gxsp_system *system, gxsp_pool *scratch, gxsp_list *list) {
+    uint32_t *last = (uint32_t *)gxsp_take(scratch, system->multigrid.levels[1].n, sizeof(uint32_t));
+    uint32_t one[4 * GXS_POINT_MOST], other[4 * GXS_POINT_MOST], i, j, e;
+    gxsp_list chain = {NULL, NULL, 0, 0}; /* column, the entry of the same row before it + 1 */
+    size_t t;
+    chain.scratch = scratch;
+    for (t = 0; t < system->lasting->count && !scratch->failed; t++) {
+        const gxsp_term *term = &system->lasting->term[t];
+        const uint32_t some = term->spread > 0 ? gxsp_pair_bases(system, term, 1, one) : 0,
+                       others = some > 0 ? gxsp_pair_bases(system, term, -1, other) : 0;
+        for (i = 0; i < some; i++)
+            for (j = 0; j < others; j++) {
+                const uint32_t row = one[i] < other[j] ? one[i] : other[j],
+                               column = one[i] < other[j] ? other[j] : one[i];
+                for (e = last[row]; e > 0 && chain.pair[e - 1][0] != column; e = chain.pair[e - 1][1]) {}
+                if (e > 0 || row == column) continue;
+                gxsp_list_add(&chain, column, last[row]);
+                if (scratch->failed) return;
+                last[row] = chain.count;
+                gxsp_nested_entries(system->affine.hidden, row, column, list);
+            }
+    }
+}
+
 /* >>pattern: edges of chunks, pattern of level 1 and of the assembled matrix --------------------------------------- */
 
 /* In: chunks and the transfer of level 0. Out: the rows of level 1's matrix, found without an assembled one, and
@@ -5189,6 +5233,7 @@ static void gxsp_first_pattern(gxsp_system *system, gxsp_pool *scratch, const gx
     gxsp_list list;
     memset(&list, 0, sizeof list);
     list.scratch = scratch;
+    system->multigrid.mark = system->multigrid.pool.last;
     for (c = 0; c < system->mesh.chunk_count; c++)
         nodes = system->mesh.chunks[c].node_count > nodes ? system->mesh.chunks[c].node_count : nodes;
     /* four parents to a node */
@@ -5203,6 +5248,7 @@ static void gxsp_first_pattern(gxsp_system *system, gxsp_pool *scratch, const gx
         if (chunk->pair_count > system->multigrid.pairs.most) system->multigrid.pairs.most = chunk->pair_count;
     }
     if (system->affine.count > 0) gxsp_nested_pattern(system, scratch, before ? dirty : NULL, &list);
+    if (system->multigrid.joined && !before) gxsp_joint_pattern(system, scratch, &list);
     if (!scratch->failed)
         gxsp_rows_make(&system->multigrid.pool, scratch, &system->multigrid.levels[1], &list, before, dirty);
 }
@@ -5212,7 +5258,7 @@ static uint32_t gxsp_element_pairs(const gxsp_system *system, const uint32_t *co
     uint32_t all[16], count = 0, listed = 0, i, j;
     float weights[4];
     int k;
-    for (k = 0; k < 4; k++) count += (uint32_t)gxsp_corner_masters(system, copies[k], all + count, weights);
+    for (k = 0; k < 4; k++) count += (uint32_t)gxsp_masters_of(system, copies[k], all + count, weights);
     for (i = 0; i < count; i++)
         for (j = i; j < count; j++, listed++) {
             list[listed][0] = all[i] < all[j] ? all[i] : all[j];
@@ -6163,33 +6209,58 @@ static double gxsp_point_modulus(const gxsp_affine_block *block, int point, int 
     return (sum[0] + sum[4] + sum[8]) / 9;
 }
 
-/* Diagonal blocks of one element's corner: of its copy, or of all parts of its group */
-static void gxsp_affine_corner_blocks(gxsp_system *system, const gxsp_affine_block *block, int l, int corner,
-                                      double rate) {
-    gxsp_affine *affine = &system->affine;
-    const uint32_t copy = block->vector[corner][l], place = affine->place[copy];
-    const int parts = place == GXSP_NONE ? 1 : 4;
-    double gradient[4][3], value[4], flux[27], plain[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0};
-    int p, a, b, k;
+/* Adds weight x a function to the shares of node's one, which it lists if it is new. Returns how many are listed. */
+static uint32_t gxsp_add_function(uint32_t *node, double (*share)[16], uint32_t count, uint32_t to, uint32_t function,
+                                  double weight) {
+    uint32_t c;
+    for (c = 0; c < count && node[c] != to; c++) {}
+    if (c == count) {
+        memset(share[c], 0, sizeof share[c]);
+        node[count++] = to;
+    }
+    share[c][function] += weight;
+    return count;
+}
+
+/* Adds a block of two parts of a group, or of a copy, to the diagonal. p, q: in the order of their parts */
+static void gxsp_add_own(gxsp_affine *affine, uint32_t p, uint32_t q, const double block[9]) {
+    static const int packed[6] = {0, 1, 2, 4, 5, 8};
+    const uint32_t place = affine->place[p];
+    int k;
+    for (k = 0; k < 6 && place == GXSP_NONE; k++) affine->own[p][k] += block[packed[k]];
+    for (k = 0; k < 9 && place != GXSP_NONE; k++)
+        affine->full[place / 4][gxsp_packed_mass[place & 3][affine->place[q] & 3]][k] += block[k];
+}
+
+/* Do two vectors share a diagonal block, with the parts of a group in order? */
+static int gxsp_is_own(const gxsp_affine *affine, uint32_t p, uint32_t q) {
+    const uint32_t a = affine->place[p], b = affine->place[q];
+    return p == q || (a != GXSP_NONE && b != GXSP_NONE && a / 4 == b / 4 && a < b);
+}
+
+/* Diagonal blocks of one element: of the vectors that move it. Where corners follow, those are their masters. */
+static void gxsp_affine_element_blocks(gxsp_system *system, const gxsp_affine_block *block, int l, double rate) {
+    uint32_t node[64], masters[16], count = 0, c, d, k;
+    double share[64][16], gradient[64][3], value[64], flux[27];
+    float weights[16];
+    int p, n;
+    for (k = 0; k < 16; k++) {
+        n = block->vector[k][l] == GXSP_NONE ? 0 : gxsp_masters_of(system, block->vector[k][l], masters, weights);
+        while (n-- > 0) count = gxsp_add_function(node, share, count, masters[n], k, (double)weights[n]);
+    }
     for (p = 0; p < 4; p++) {
-        for (a = 0; a < parts; a++) {
-            double share[16] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
-            share[a == 0 ? corner : 4 + 3 * corner + a - 1] = 1;
-            gxsp_point_function(block, p, l, share, gradient[a], &value[a]);
-        }
-        for (b = 0; b < parts; b++) {
-            gxsp_point_flux(block, p, l, gradient[b], flux);
-            for (a = 0; a <= b; a++) {
-                double *to = parts == 1 ? plain : affine->full[place / 4][gxsp_packed_mass[a][b]];
-                const double mass = rate * block->rest.mass[l] * value[a] * value[b];
-                gxsp_point_couple(gradient[a], flux, to);
+        for (c = 0; c < count; c++) gxsp_point_function(block, p, l, share[c], gradient[c], &value[c]);
+        for (d = 0; d < count; d++) {
+            gxsp_point_flux(block, p, l, gradient[d], flux);
+            for (c = 0; c < count; c++) {
+                double to[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0};
+                const double mass = rate * block->rest.mass[l] * value[c] * value[d];
+                if (!gxsp_is_own(&system->affine, node[c], node[d])) continue;
+                gxsp_point_couple(gradient[c], flux, to);
                 to[0] += mass, to[4] += mass, to[8] += mass;
+                gxsp_add_own(&system->affine, node[c], node[d], to);
             }
         }
-    }
-    for (k = 0; k < 6 && parts == 1; k++) {
-        static const int packed[6] = {0, 1, 2, 4, 5, 8};
-        affine->own[copy][k] += plain[packed[k]];
     }
 }
 
@@ -6200,41 +6271,42 @@ static inline float gxsp_diagonal_share(const gxsp_term *term, float weight) {
     return term->spread > 0 ? term->spread * fabsf(weight) : weight * weight;
 }
 
-/* The same for the block of a group: the sum of its weights' sizes stands for the weight of a copy. */
-static float gxsp_group_factor(const gxsp_affine *affine, const gxsp_term *term, const gxsp_share *share,
-                               uint32_t place) {
-    float sum = 0;
-    uint32_t j;
-    for (j = 0; j < term->count && term->spread > 0 && place != GXSP_NONE; j++) {
-        const uint32_t other = affine->place[share[j].copy];
-        if (other != GXSP_NONE && other / 4 == place / 4) sum += fabsf(share[j].weight);
-    }
-    return sum > 0 ? term->spread / sum : 1;
+/* What moves the vectors of a term: those that follow none, with their weights. Returns how many. */
+static uint32_t gxsp_term_masters(const gxsp_system *system, const gxsp_term *term, uint32_t *node, float *weight) {
+    const gxsp_share *share = system->lasting->share + term->first, *end = share + term->count;
+    uint32_t masters[16], count = 0, i;
+    float weights[16];
+    int n;
+    for (; share < end; share++)
+        for (n = gxsp_masters_of(system, share->copy, masters, weights); n-- > 0;) {
+            for (i = 0; i < count && node[i] != masters[n]; i++) {}
+            if (i == count) node[count] = masters[n], weight[count++] = 0;
+            weight[i] += share->weight * weights[n];
+        }
+    return count;
 }
 
-/* Springs and contact in the diagonal blocks of groups, and of copies that have no slot in a chunk */
-static void gxsp_affine_terms(gxsp_system *system) {
+/* A term in the diagonal blocks of what moves it. Those of a pair bound the whole matrix, see gxsp_diagonal_share: for
+ * the block of a group the sum of its weights' sizes stands for the weight of a copy. */
+static void gxsp_affine_term(gxsp_system *system, const gxsp_term *term) {
     static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-    gxsp_affine *affine = &system->affine;
-    size_t t;
-    uint32_t i, j;
+    uint32_t node[16 * GXS_POINT_MOST], count, i, j;
+    float weight[16 * GXS_POINT_MOST], spread = 0;
     int k;
-    for (t = 0; t < system->lasting->count; t++) {
-        const gxsp_term *term = &system->lasting->term[t];
-        const gxsp_share *share = system->lasting->share + term->first;
-        for (i = 0; i < term->count; i++) {
-            const uint32_t p = share[i].copy, place = affine->place[p];
-            const float factor = gxsp_group_factor(affine, term, share, place);
-            for (k = 0; k < 6 && place == GXSP_NONE && system->mesh.copy_start[p] == system->mesh.copy_start[p + 1];
-                 k++)
-                affine->own[p][k] += (double)(gxsp_diagonal_share(term, share[i].weight) * term->hessian[k]);
-            for (j = 0; j < term->count && place != GXSP_NONE; j++) {
-                const uint32_t other = affine->place[share[j].copy];
-                if (other == GXSP_NONE || other / 4 != place / 4 || (place & 3) > (other & 3)) continue;
-                for (k = 0; k < 9; k++)
-                    affine->full[place / 4][gxsp_packed_mass[place & 3][other & 3]][k] +=
-                        (double)(factor * share[i].weight * share[j].weight * term->hessian[full[k]]);
-            }
+    count = gxsp_term_masters(system, term, node, weight);
+    for (i = 0; i < count && term->spread > 0; i++) spread += fabsf(weight[i]);
+    for (i = 0; i < count; i++) {
+        const uint32_t place = system->affine.place[node[i]];
+        float size = 0, factor;
+        for (j = 0; j < count; j++)
+            if (node[j] == node[i] || (place != GXSP_NONE && system->affine.place[node[j]] / 4 == place / 4))
+                size += fabsf(weight[j]);
+        factor = spread > 0 && size > 0 ? spread / size : 1;
+        for (j = 0; j < count; j++) {
+            double block[9];
+            if (!gxsp_is_own(&system->affine, node[i], node[j])) continue;
+            for (k = 0; k < 9; k++) block[k] = (double)(factor * weight[i] * weight[j] * term->hessian[full[k]]);
+            gxsp_add_own(&system->affine, node[i], node[j], block);
         }
     }
 }
@@ -6274,20 +6346,42 @@ static void gxsp_affine_invert(const gxsp_system *system, uint32_t group) {
         for (j = 0; j <= i; j++) affine->root[group][i * (i + 1) / 2 + j] = (float)(w[i][j] * scale[j]);
 }
 
+/* Adds what followers have in chunks to the blocks of their masters that are in none. */
+static void gxsp_affine_follower_slots(gxsp_system *system) {
+    static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    const float *slots = (const float *)(const void *)system->vectors.slots;
+    uint32_t i, s, n;
+    int k;
+    for (i = 0; i < system->model.follower_count; i++) {
+        const gxsp_follower *follower = &system->model.followers[i];
+        for (s = system->mesh.copy_start[follower->copy]; s < system->mesh.copy_start[follower->copy + 1]; s++)
+            for (n = 0; n < 4; n++) {
+                const uint32_t master = follower->master[n];
+                const double square = follower->weight[n] * follower->weight[n];
+                double block[9];
+                if (system->mesh.copy_start[master] < system->mesh.copy_start[master + 1] || !(square > 0)) continue;
+                for (k = 0; k < 9; k++)
+                    block[k] = square * (double)slots[6 * (size_t)system->mesh.copy_slot[s] + (size_t)full[k]];
+                gxsp_add_own(&system->affine, master, master, block);
+            }
+    }
+}
+
 /* Diagonal blocks from the tangents. rate: times scale */
 static void gxsp_affine_diagonal(gxsp_system *system, double rate) {
     static const int packed[6] = {0, 1, 2, 4, 5, 8};
     gxsp_affine *affine = &system->affine;
     uint32_t b, group;
+    size_t t;
     int l, k, p;
     memset(affine->own, 0, system->model.n * sizeof *affine->own);
     memset(affine->full, 0, affine->group_count * sizeof *affine->full);
     for (b = 0; b < affine->block_count; b++)
         for (l = 0; l < GXSP_LANES && !affine->blocks[b].still; l++)
-            for (k = 0; k < 4 && affine->blocks[b].vector[0][l] != GXSP_NONE; k++)
-                if (!gxsp_follows(system, affine->blocks[b].vector[k][l]))
-                    gxsp_affine_corner_blocks(system, &affine->blocks[b], l, k, rate);
-    gxsp_affine_terms(system);
+            if (affine->blocks[b].vector[0][l] != GXSP_NONE)
+                gxsp_affine_element_blocks(system, &affine->blocks[b], l, rate);
+    gxsp_affine_follower_slots(system);
+    for (t = 0; t < system->lasting->count; t++) gxsp_affine_term(system, &system->lasting->term[t]);
     for (group = 0; group < affine->group_count; group++) {
         for (p = 0; p < 4; p++)
             for (k = 0; k < 6; k++)
@@ -7757,13 +7851,13 @@ static void gxsp_task_diagonal(void *context, size_t index) {
 }
 
 /* Adds springs, contact and followers to the diagonal blocks: to a copy's first slot, from which the blocks are
- * summed. */
+ * summed. With affine copies, >>rule has added the springs and contact. */
 static void gxsp_extra_diagonal(gxsp_system *system) {
     float *slots = (float *)(void *)system->vectors.slots;
     size_t t;
     uint32_t i, s, n;
     int k, m;
-    for (t = 0; t < system->lasting->count; t++)
+    for (t = 0; t < system->lasting->count && system->affine.count == 0; t++)
         for (n = 0; n < system->lasting->term[t].count; n++) {
             const gxsp_term *term = &system->lasting->term[t];
             const gxsp_share *share = &system->lasting->share[term->first + n];
@@ -7808,11 +7902,11 @@ static int gxsp_linearise(gxsp_system *system, double rate, const double *from, 
     gxsp_pass pass = gxsp_pass_of(system, rate, from, exact);
     size_t i;
     gxsp_parallel(system->jobs, system->mesh.chunk_count, gxsp_task_linearise, &pass);
-    gxsp_extra_diagonal(system);
     if (system->affine.count > 0) {
         gxsp_over_affine(system, gxsp_task_affine_tangents, &pass, NULL);
         gxsp_affine_diagonal(system, pass.rate);
     }
+    gxsp_extra_diagonal(system);
     gxsp_over_ranges(system, gxsp_task_diagonal, &pass, NULL, 0);
     *collapsed = 0;
     for (i = 0; i < system->affine.block_count; i++) *collapsed |= system->affine.blocks[i].collapsed;
@@ -8086,7 +8180,7 @@ static float gxsp_side_of(const gxsp_system *system, const gxsp_share *share, ui
 }
 
 /* What a pair's copies of one sign, or all of them (sign 0), are between coarse functions: nodes of level 1 with the
- * sums of their weights, in the order in which they are met. Returns how many. */
+ * sums of their weights, in the order of their numbers. Returns how many. */
 static uint32_t gxsp_coarse_shares(const gxsp_system *system, const gxsp_share *share, uint32_t count, int sign,
                                    uint32_t *node, float *weight) {
     uint32_t found = 0, i, j, p, parents[16], parent_count;
@@ -8101,34 +8195,38 @@ static uint32_t gxsp_coarse_shares(const gxsp_system *system, const gxsp_share *
             weight[j] += share[i].weight * weights[p];
         }
     }
+    for (i = 1; i < found; i++) {
+        const uint32_t number = node[i];
+        const float sum = weight[i];
+        for (j = i; j > 0 && node[j - 1] > number; j--) node[j] = node[j - 1], weight[j] = weight[j - 1];
+        node[j] = number, weight[j] = sum;
+    }
     return found;
 }
 
-/* Adds factor x a Hessian to an entry of level 1's matrix: where copies are affine, to its part in double precision. */
-static void gxsp_add_coarse(gxsp_system *system, uint32_t entry, float factor, const float *hessian) {
-    static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+/* Adds factor x a block to an entry of level 1's matrix: where copies are affine, to its part in double precision. */
+static inline void gxsp_add_coarse(gxsp_system *system, uint32_t entry, float factor, const float block[9]) {
     int k;
-    for (k = 0; k < 9; k++)
-        if (system->affine.count > 0)
-            system->affine.block[9 * (size_t)entry + (size_t)k] += (double)factor * (double)hessian[full[k]];
-        else
-            system->multigrid.levels[1].block[9 * (size_t)entry + (size_t)k] += factor * hessian[full[k]];
+    if (system->affine.count > 0)
+        for (k = 0; k < 9; k++)
+            system->affine.block[9 * (size_t)entry + (size_t)k] += (double)factor * (double)block[k];
+    else
+        gxsp_add_scaled(factor, block, system->multigrid.levels[1].block + 9 * (size_t)entry);
 }
 
-/* Adds factor x the outer product of weights times a Hessian to level 1's matrix, if that has all the entries it
+/* Adds factor x the outer product of weights times a block to level 1's matrix, if that has all the entries it
  * needs. Returns whether it has. */
 static int gxsp_add_outer(gxsp_system *system, const uint32_t *node, const float *weight, uint32_t count, float factor,
-                          const float *hessian) {
+                          const float block[9]) {
     const gxsp_level *level = &system->multigrid.levels[1];
     uint32_t i, j, entry;
     int adds;
     for (adds = 0; adds < 2; adds++)
         for (i = 0; i < count; i++)
-            for (j = 0; j < count; j++) {
-                if (node[i] > node[j]) continue;
-                entry = gxsp_find_entry(level, node[i], node[j]);
-                if (level->column[entry] != node[j]) return 0;
-                if (adds) gxsp_add_coarse(system, entry, factor * weight[i] * weight[j], hessian);
+            for (j = i, entry = level->start[node[i]]; j < count; j++) {
+                while (entry < level->start[node[i] + 1] && level->column[entry] < node[j]) entry++;
+                if (entry == level->start[node[i] + 1] || level->column[entry] != node[j]) return 0;
+                if (adds) gxsp_add_coarse(system, entry, factor * weight[i] * weight[j], block);
             }
     return 1;
 }
@@ -8137,20 +8235,22 @@ static int gxsp_add_outer(gxsp_system *system, const uint32_t *node, const float
  * it has none between the two sides, twice each side's: (a - b)^2 <= 2 a^2 + 2 b^2; or, where it has not even those, a
  * diagonal that bounds them: (sum w_i x_i)^2 <= sum |w_j| sum |w_i| x_i^2. */
 static void gxsp_coarse_pair(gxsp_system *system, const gxsp_term *term) {
+    static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
     const gxsp_share *share = system->lasting->share + term->first;
     uint32_t node[16 * GXS_POINT_MOST], count, i;
-    float weight[16 * GXS_POINT_MOST];
+    float weight[16 * GXS_POINT_MOST], block[9];
     int sign;
+    for (i = 0; i < 9; i++) block[i] = term->hessian[full[i]];
     count = gxsp_coarse_shares(system, share, term->count, 0, node, weight);
-    if (gxsp_add_outer(system, node, weight, count, 1, term->hessian)) return;
+    if (gxsp_add_outer(system, node, weight, count, 1, block)) return;
     for (sign = -1; sign <= 1; sign += 2) {
         float spread = 0;
         count = gxsp_coarse_shares(system, share, term->count, sign, node, weight);
-        if (gxsp_add_outer(system, node, weight, count, 2, term->hessian)) continue;
+        if (gxsp_add_outer(system, node, weight, count, 2, block)) continue;
         for (i = 0; i < count; i++) spread += fabsf(weight[i]);
         for (i = 0; i < count; i++)
             gxsp_add_coarse(system, gxsp_find_entry(&system->multigrid.levels[1], node[i], node[i]),
-                            2 * spread * fabsf(weight[i]), term->hessian);
+                            2 * spread * fabsf(weight[i]), block);
     }
 }
 
@@ -8201,14 +8301,7 @@ static void gxsp_nested_element(gxsp_system *system, const gxsp_affine_block *bl
     int p, m;
     for (k = 0; k < 16; k++) {
         n = block->vector[k][l] == GXSP_NONE ? 0 : gxsp_nested_parents(system, block->vector[k][l], parents, weights);
-        while (n-- > 0) {
-            for (c = 0; c < count && node[c] != parents[n]; c++) {}
-            if (c == count) {
-                memset(share[c], 0, sizeof share[c]);
-                node[count++] = parents[n];
-            }
-            share[c][k] += (double)weights[n];
-        }
+        while (n-- > 0) count = gxsp_add_function(node, share, count, parents[n], k, (double)weights[n]);
     }
     for (p = 0; p < 4; p++) {
         const double tie = 0.25 * GXSP_TIE * gxsp_point_modulus(block, p, l);
@@ -8231,35 +8324,6 @@ static void gxsp_nested_element(gxsp_system *system, const gxsp_affine_block *bl
     }
 }
 
-/* Springs and contact between coarse functions, where level 1's matrix has an entry for them */
-static void gxsp_nested_term(gxsp_system *system, const gxsp_term *term) {
-    static const int full[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
-    const gxsp_level *level = &system->multigrid.levels[1];
-    const gxsp_share *share = system->lasting->share + term->first;
-    uint32_t i, j, p, q, rows[16], columns[16], row_count, column_count;
-    float w[16], v[16];
-    int k;
-    if (term->spread > 0) {
-        gxsp_coarse_pair(system, term);
-        return;
-    }
-    for (i = 0; i < term->count; i++)
-        for (j = 0; j < term->count; j++) {
-            row_count = gxsp_nested_parents(system, share[i].copy, rows, w);
-            column_count = gxsp_nested_parents(system, share[j].copy, columns, v);
-            for (p = 0; p < row_count; p++)
-                for (q = 0; q < column_count; q++) {
-                    const double weight = (double)(share[i].weight * w[p]) * (double)(share[j].weight * v[q]);
-                    uint32_t entry;
-                    if (rows[p] > columns[q]) continue;
-                    entry = gxsp_find_entry(level, rows[p], columns[q]);
-                    if (level->column[entry] != columns[q]) continue;
-                    for (k = 0; k < 9; k++)
-                        system->affine.block[9 * (size_t)entry + (size_t)k] += weight * (double)term->hessian[full[k]];
-                }
-        }
-}
-
 /* Row i of the factor in double precision: see gxsp_factor_row */
 static double *gxsp_nested_row(const gxsp_system *system, uint32_t i) {
     const gxsp_factor *factor = &system->multigrid.factor;
@@ -8277,12 +8341,76 @@ static double gxsp_double_dot(const double *a, const double *b, size_t count) {
     return (sum[0] + sum[2]) + (sum[1] + sum[3]);
 }
 
+/* dots[3 r + c] = row r of a times row c of b, see gxsp_nine_dots */
+static void gxsp_nine_double_dots(double *const *a, double *const *b, size_t from, size_t count,
+                                  double *GXSP_RESTRICT dots) {
+    size_t k = from, end = from + count;
+#if defined(GXSP_SHUFFLES)
+    gxsp_doubles s0 = GXSP_NO_DOUBLES, s1 = s0, s2 = s0, s3 = s0, s4 = s0, s5 = s0, s6 = s0, s7 = s0, s8 = s0;
+    for (; k + GXSP_DOUBLES <= end; k += GXSP_DOUBLES) {
+        const gxsp_doubles x = GXSP_LOAD_DOUBLES(b[0] + k), y = GXSP_LOAD_DOUBLES(b[1] + k),
+                           z = GXSP_LOAD_DOUBLES(b[2] + k), p = GXSP_LOAD_DOUBLES(a[0] + k),
+                           q = GXSP_LOAD_DOUBLES(a[1] + k), r = GXSP_LOAD_DOUBLES(a[2] + k);
+        GXSP_ADD_PRODUCT(s0, p, x), GXSP_ADD_PRODUCT(s1, p, y), GXSP_ADD_PRODUCT(s2, p, z);
+        GXSP_ADD_PRODUCT(s3, q, x), GXSP_ADD_PRODUCT(s4, q, y), GXSP_ADD_PRODUCT(s5, q, z);
+        GXSP_ADD_PRODUCT(s6, r, x), GXSP_ADD_PRODUCT(s7, r, y), GXSP_ADD_PRODUCT(s8, r, z);
+    }
+    dots[0] = GXSP_SUM_DOUBLES(s0), dots[1] = GXSP_SUM_DOUBLES(s1), dots[2] = GXSP_SUM_DOUBLES(s2);
+    dots[3] = GXSP_SUM_DOUBLES(s3), dots[4] = GXSP_SUM_DOUBLES(s4), dots[5] = GXSP_SUM_DOUBLES(s5);
+    dots[6] = GXSP_SUM_DOUBLES(s6), dots[7] = GXSP_SUM_DOUBLES(s7), dots[8] = GXSP_SUM_DOUBLES(s8);
+#else
+    memset(dots, 0, 9 * sizeof *dots);
+#endif
+    for (; k < end; k++) {
+        const double x = b[0][k], y = b[1][k], z = b[2][k], p = a[0][k], q = a[1][k], r = a[2][k];
+        dots[0] += p * x, dots[1] += p * y, dots[2] += p * z;
+        dots[3] += q * x, dots[4] += q * y, dots[5] += q * z;
+        dots[6] += r * x, dots[7] += r * y, dots[8] += r * z;
+    }
+}
+
+/* As gxsp_factor_left, in place */
+static void gxsp_nested_left(const gxsp_system *system, uint32_t i) {
+    const gxsp_factor *factor = &system->multigrid.factor;
+    const uint32_t first = factor->first[i / 3];
+    double *own[3], *other[3], dots[9];
+    uint32_t j, m, r;
+    for (r = 0; r < 3; r++) own[r] = gxsp_nested_row(system, i + r);
+    for (j = first; j < i; j += 3) {
+        m = factor->first[j / 3] > first ? factor->first[j / 3] : first;
+        for (r = 0; r < 3; r++) other[r] = gxsp_nested_row(system, j + r);
+        gxsp_nine_double_dots(own, other, m, j - m, dots);
+        for (r = 0; r < 3; r++) {
+            double *sum = own[r] + j;
+            sum[0] = (sum[0] - dots[3 * r]) * other[0][j];
+            sum[1] = (sum[1] - dots[3 * r + 1] - other[1][j] * sum[0]) * other[1][j + 1];
+            sum[2] = (sum[2] - dots[3 * r + 2] - other[2][j] * sum[0] - other[2][j + 1] * sum[1]) * other[2][j + 2];
+        }
+    }
+}
+
+/* A node's own columns in row i + r. 0: a number overflowed. */
+static int gxsp_nested_own(const gxsp_system *system, uint32_t i, uint32_t r) {
+    const uint32_t first = system->multigrid.factor.first[i / 3];
+    double *row = gxsp_nested_row(system, i + r);
+    const double own = row[i + r];
+    double left;
+    uint32_t j;
+    for (j = i; j < i + r; j++) {
+        const double *other = gxsp_nested_row(system, j);
+        row[j] = (row[j] - gxsp_double_dot(other + first, row + first, j - first)) * other[j];
+    }
+    left = own * (1 + 1e-12) - gxsp_double_dot(row + first, row + first, j - first);
+    row[j] = own < GXSP_TINY ? 0 : left > 1e-10 * own ? 1 / sqrt(left) : 0;
+    return gxsp_finite(row[j]);
+}
+
 /* The sum of both matrices in the factor's envelope, then Cholesky; the diagonal, with 1e-12 more, is inverted. place:
  * n, scratch. 0: a number overflowed. */
 static int gxsp_nested_factor(gxsp_system *system, uint32_t *place) {
     const gxsp_factor *factor = &system->multigrid.factor;
     const gxsp_level *level = &system->multigrid.levels[1];
-    uint32_t i, j, k, r, c;
+    uint32_t i, k, r, c;
     memset(system->affine.entry, 0, factor->entry_count * sizeof(double));
     for (i = 0; i < level->n; i++) place[factor->order[i]] = i;
     for (i = 0; i < level->n; i++)
@@ -8294,17 +8422,10 @@ static int gxsp_nested_factor(gxsp_system *system, uint32_t *place) {
                     gxsp_nested_row(system, column <= row ? row : column)[column <= row ? column : row] =
                         (double)level->block[number] + system->affine.block[number];
                 }
-    for (i = 0; i < factor->n; i++) {
-        const uint32_t first = factor->first[i / 3];
-        double *row = gxsp_nested_row(system, i), own = row[i];
-        for (j = first; j < i; j++) {
-            const uint32_t other = factor->first[j / 3], from = other > first ? other : first;
-            const double *left = gxsp_nested_row(system, j);
-            row[j] = (row[j] - gxsp_double_dot(row + from, left + from, j - from)) * left[j];
-        }
-        row[i] = own * (1 + 1e-12) - gxsp_double_dot(row + first, row + first, i - first);
-        row[i] = own < GXSP_TINY ? 0 : row[i] > 1e-10 * own ? 1 / sqrt(row[i]) : 0;
-        if (!gxsp_finite(row[i])) return 0;
+    for (i = 0; i < factor->n; i += 3) {
+        gxsp_nested_left(system, i);
+        for (r = 0; r < 3; r++)
+            if (!gxsp_nested_own(system, i, r)) return 0;
     }
     return 1;
 }
@@ -8322,7 +8443,7 @@ static int gxsp_nested_numbers(gxsp_system *system, double rate, const uint8_t *
             if (affine->blocks[b].rest.weight[l] > 0 &&
                 (!dirty || gxsp_nested_dirty(system, &affine->blocks[b], l, dirty)))
                 gxsp_nested_element(system, &affine->blocks[b], l, rate, dirty);
-    for (t = 0; t < system->lasting->count && !dirty; t++) gxsp_nested_term(system, &system->lasting->term[t]);
+    for (t = 0; t < system->lasting->count && !dirty; t++) gxsp_coarse_pair(system, &system->lasting->term[t]);
     return gxsp_nested_factor(system, system->multigrid.pairs.local);
 }
 
@@ -8548,7 +8669,7 @@ static void gxsp_assemble_following(gxsp_system *system, uint32_t p, uint32_t q,
     gxsp_level *fine = &system->multigrid.levels[0];
     uint32_t a[4], b[4];
     float wa[4], wb[4], transposed[9];
-    const int a_count = gxsp_corner_masters(system, p, a, wa), b_count = gxsp_corner_masters(system, q, b, wb);
+    const int a_count = gxsp_masters_of(system, p, a, wa), b_count = gxsp_masters_of(system, q, b, wb);
     int i, j;
     gxsp_transpose_block(block, transposed);
     for (i = 0; i < a_count; i++)
@@ -8602,8 +8723,8 @@ static int gxsp_assemble_term(gxsp_system *system, const gxsp_term *term) {
     for (; share < end; share++)
         if (share->weight * share->weight > 0) {
             const uint32_t first = count;
-            for (count += (uint32_t)gxsp_corner_masters(system, share->copy, a + count, w + count), i = first;
-                 i < count; i++)
+            for (count += (uint32_t)gxsp_masters_of(system, share->copy, a + count, w + count), i = first; i < count;
+                 i++)
                 w[i] *= share->weight;
         }
     for (adds = 0; adds < 2; adds++)
@@ -8630,7 +8751,7 @@ static void gxsp_assemble(gxsp_system *system, double rate) {
     for (i = 0; i < fine->n && system->model.lumped_mass; i++) {
         uint32_t a[4], p, q;
         float w[4];
-        const uint32_t count = (uint32_t)gxsp_corner_masters(system, i, a, w);
+        const uint32_t count = (uint32_t)gxsp_masters_of(system, i, a, w);
         for (p = 0; p < count; p++)
             for (q = 0; q < count; q++)
                 if (a[p] <= a[q])
@@ -9898,6 +10019,16 @@ static void gxsp_renew_levels(gxsp_renewal *update) {
     if (!update->scratch->failed) gxsp_remake_levels(update);
 }
 
+/* Are there levels now that they have been made? If memory has run out, there are none. */
+static int gxsp_keep_levels(gxsp_system *system, const gxsp_pool *scratch) {
+    if (!scratch->failed && !system->pool.failed && !system->multigrid.pool.failed) return 1;
+    gxsp_release_to(&system->multigrid.pool, NULL);
+    system->multigrid.pool.failed = system->pool.failed = 0;
+    system->multigrid.level_count = 0;
+    system->coarse.rate = -1;
+    return 0;
+}
+
 /* Makes levels, or brings them up to date, for a solve. linearised: the pass that has made the Hessian. 0: there was no
  * memory. Then there are no levels, and the next solve makes them. */
 static int gxsp_fit_levels(gxsp_system *system, gxsp_pass *linearised) {
@@ -9913,12 +10044,26 @@ static int gxsp_fit_levels(gxsp_system *system, gxsp_pass *linearised) {
     else
         gxsp_make_levels(system, &scratch);
     gxsp_release_to(&scratch, NULL);
-    if (!scratch.failed && !system->pool.failed && !system->multigrid.pool.failed) return 1;
-    gxsp_release_to(&system->multigrid.pool, NULL);
-    system->multigrid.pool.failed = system->pool.failed = 0;
-    system->multigrid.level_count = 0;
-    system->coarse.rate = -1;
-    return 0;
+    return gxsp_keep_levels(system, &scratch);
+}
+
+/* Level 1 of affine copies with entries between the sides of the present pairs, and with none between those that were.
+ * 0: there was no memory, see gxsp_fit_levels. */
+static int gxsp_join_levels(gxsp_system *system) {
+    gxsp_pool scratch = gxsp_pool_make(&system->pool.allocator);
+    int joins = 0;
+    size_t t;
+    for (t = 0; t < system->lasting->count && !joins; t++) joins = system->lasting->term[t].spread > 0;
+    if (system->affine.count == 0 || !(joins || system->multigrid.joined)) return 1;
+    system->multigrid.joined = joins;
+    gxsp_release_to(&system->multigrid.pool, system->multigrid.mark);
+    gxsp_edges_make(system, &scratch);
+    gxsp_pairs_make(system, &scratch);
+    if (!scratch.failed) gxsp_first_pattern(system, &scratch, NULL, NULL);
+    if (!scratch.failed && !system->multigrid.pool.failed) gxsp_nested_end(system, &scratch);
+    if (!scratch.failed && !system->multigrid.pool.failed) gxsp_levels_end(system);
+    gxsp_release_to(&scratch, NULL);
+    return gxsp_keep_levels(system, &scratch);
 }
 
 /* History of steps, and data that depends on all copies */
@@ -10994,6 +11139,10 @@ static int gxsp_prepare(gxsp_problem *problem) {
     if (!system->multigrid.fine) gxsp_choose_omega(system, problem->rate);
     other = gxsp_coarse_differs(problem);
     if (!other && (problem->exact || !(system->coarse.worn || gxsp_coarse_ends(system)))) return 1;
+    if (!gxsp_join_levels(system)) {
+        problem->starved = 1;
+        return 0;
+    }
     system->coarse.lived = system->coarse.served;
     system->coarse.pace_old = other ? 0 : system->coarse.pace;
     system->coarse.pace = system->coarse.read_nepers = 0;
