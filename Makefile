@@ -41,7 +41,7 @@ help:
 	@echo "make demo        cuts a cube of 5 tetrahedra into 36 sticks, simulates it, writes a page that plays it (needs a C compiler only)"
 	@echo "make check-page  opens the demo's page in headless Chromium; installs Chromium and node where they are missing"
 	@echo "make check       builds and runs the tests; installs Check and pkg-config where they are missing"
-	@echo "make check-all   check, then lint, compile tests, sanitizers, compilers and flags; takes longer"
+	@echo "make check-all   check, then lint, compile tests, sanitizers, compilers, flags, platforms and pages; takes longer"
 	@echo "make examples    builds $(examples) in $(BUILD)/"
 	@echo "make scenes      runs the scenes, writes docs/SCENES.md; SMALL=1: small ones, $(BUILD)/scenes/SCENES.md"
 	@echo "make pictures    renders the scenes into docs/pictures/; installs f3d and a virtual display where they are missing"
@@ -537,6 +537,8 @@ check-all: check
 	@$(MAKE) --no-print-directory flags
 	@$(MAKE) --no-print-directory hashes
 	@$(MAKE) --no-print-directory platforms
+	@$(MAKE) --no-print-directory check-page
+	@$(MAKE) --no-print-directory check-web
 
 clean:
 	rm -rf $(BUILD)
