@@ -81,7 +81,8 @@ fma=$(grep -c -m1 ' fma ' /proc/cpuinfo 2>/dev/null || true)
 for cc in gcc clang; do
     try $cc -std=c99 -O0
     [ -n "${FEWER-}" ] || try $cc -std=c99 -O2
-    try $cc -std=gnu99 -O3 -ffast-math
+    # -Ofast below is that and more
+    [ -n "${FEWER-}" ] && [ "$x86" = 1 ] && [ "${fma:-0}" != 0 ] || try $cc -std=gnu99 -O3 -ffast-math
     [ -n "${FEWER-}" ] || try $cc -std=c99 -O1 -DGXB_LIMB32
     [ $cc = clang ] || try $cc -std=c99 -O1 -DGXFEM_INTRINSICS
     if [ "$x86" = 1 ]; then
