@@ -760,8 +760,8 @@ extern "C" {
 
 /* Steps by the error asked for. Of a motion of frequency w the midpoint rule's error after the time GXSP_QUALITY_TIME,
  * s, is GXSP_QUALITY_MIDPOINT (w h)^2 (w time + GXSP_QUALITY_MORE), BDF2's likewise, and backward Euler's
- * GXSP_QUALITY_EULER w h: fits to bench/front.c, within a factor of two on most of
- * its bodies. Errors of up to GXSP_QUALITY_COARSE begin with four implicit steps, larger ones with two. */
+ * GXSP_QUALITY_EULER w h: fits to bench/front.c, within a factor of two on most of its bodies. Errors of up to
+ * GXSP_QUALITY_COARSE begin with four implicit steps, larger ones with two. */
 #define GXSP_QUALITY_TIME     0.33
 #define GXSP_QUALITY_MIDPOINT 0.0275
 #define GXSP_QUALITY_BDF2     0.3
@@ -8341,33 +8341,39 @@ static double gxsp_double_dot(const double *a, const double *b, size_t count) {
     return (sum[0] + sum[2]) + (sum[1] + sum[3]);
 }
 
-/* dots[3 r + c] = row r of a times row c of b, see gxsp_nine_dots */
-static void gxsp_nine_double_dots(double *const *a, double *const *b, size_t from, size_t count,
-                                  double *GXSP_RESTRICT dots) {
-    size_t k = from, end = from + count;
+/* A function: dots[3 r + c] = row r of a times row c of b in columns from ... end - 1, in as many sums side by side as
+ * a vector has. b: three rows of `number`, which load makes a vector of doubles of. */
 #if defined(GXSP_SHUFFLES)
-    gxsp_doubles s0 = GXSP_NO_DOUBLES, s1 = s0, s2 = s0, s3 = s0, s4 = s0, s5 = s0, s6 = s0, s7 = s0, s8 = s0;
-    for (; k + GXSP_DOUBLES <= end; k += GXSP_DOUBLES) {
-        const gxsp_doubles x = GXSP_LOAD_DOUBLES(b[0] + k), y = GXSP_LOAD_DOUBLES(b[1] + k),
-                           z = GXSP_LOAD_DOUBLES(b[2] + k), p = GXSP_LOAD_DOUBLES(a[0] + k),
-                           q = GXSP_LOAD_DOUBLES(a[1] + k), r = GXSP_LOAD_DOUBLES(a[2] + k);
-        GXSP_ADD_PRODUCT(s0, p, x), GXSP_ADD_PRODUCT(s1, p, y), GXSP_ADD_PRODUCT(s2, p, z);
-        GXSP_ADD_PRODUCT(s3, q, x), GXSP_ADD_PRODUCT(s4, q, y), GXSP_ADD_PRODUCT(s5, q, z);
-        GXSP_ADD_PRODUCT(s6, r, x), GXSP_ADD_PRODUCT(s7, r, y), GXSP_ADD_PRODUCT(s8, r, z);
-    }
-    dots[0] = GXSP_SUM_DOUBLES(s0), dots[1] = GXSP_SUM_DOUBLES(s1), dots[2] = GXSP_SUM_DOUBLES(s2);
-    dots[3] = GXSP_SUM_DOUBLES(s3), dots[4] = GXSP_SUM_DOUBLES(s4), dots[5] = GXSP_SUM_DOUBLES(s5);
+#define GXSP_NINE_SUMS(load)                                                                                           \
+    gxsp_doubles s0 = GXSP_NO_DOUBLES, s1 = s0, s2 = s0, s3 = s0, s4 = s0, s5 = s0, s6 = s0, s7 = s0, s8 = s0;         \
+    for (; k + GXSP_DOUBLES <= end; k += GXSP_DOUBLES) {                                                               \
+        const gxsp_doubles x = load(b[0] + k), y = load(b[1] + k), z = load(b[2] + k);                                 \
+        const gxsp_doubles p = GXSP_LOAD_DOUBLES(a[0] + k), q = GXSP_LOAD_DOUBLES(a[1] + k),                           \
+                           r = GXSP_LOAD_DOUBLES(a[2] + k);                                                            \
+        GXSP_ADD_PRODUCT(s0, p, x), GXSP_ADD_PRODUCT(s1, p, y), GXSP_ADD_PRODUCT(s2, p, z);                            \
+        GXSP_ADD_PRODUCT(s3, q, x), GXSP_ADD_PRODUCT(s4, q, y), GXSP_ADD_PRODUCT(s5, q, z);                            \
+        GXSP_ADD_PRODUCT(s6, r, x), GXSP_ADD_PRODUCT(s7, r, y), GXSP_ADD_PRODUCT(s8, r, z);                            \
+    }                                                                                                                  \
+    dots[0] = GXSP_SUM_DOUBLES(s0), dots[1] = GXSP_SUM_DOUBLES(s1), dots[2] = GXSP_SUM_DOUBLES(s2);                    \
+    dots[3] = GXSP_SUM_DOUBLES(s3), dots[4] = GXSP_SUM_DOUBLES(s4), dots[5] = GXSP_SUM_DOUBLES(s5);                    \
     dots[6] = GXSP_SUM_DOUBLES(s6), dots[7] = GXSP_SUM_DOUBLES(s7), dots[8] = GXSP_SUM_DOUBLES(s8);
 #else
-    memset(dots, 0, 9 * sizeof *dots);
+#define GXSP_NINE_SUMS(load) memset(dots, 0, 9 * sizeof *dots);
 #endif
-    for (; k < end; k++) {
-        const double x = b[0][k], y = b[1][k], z = b[2][k], p = a[0][k], q = a[1][k], r = a[2][k];
-        dots[0] += p * x, dots[1] += p * y, dots[2] += p * z;
-        dots[3] += q * x, dots[4] += q * y, dots[5] += q * z;
-        dots[6] += r * x, dots[7] += r * y, dots[8] += r * z;
+#define GXSP_NINE_DOTS(name, number, load)                                                                             \
+    static void name(double *const *a, number *const *b, size_t from, size_t end, double *GXSP_RESTRICT dots) {        \
+        size_t k = from;                                                                                               \
+        GXSP_NINE_SUMS(load)                                                                                           \
+        for (; k < end; k++) {                                                                                         \
+            const double x = (double)b[0][k], y = (double)b[1][k], z = (double)b[2][k], p = a[0][k], q = a[1][k],      \
+                         r = a[2][k];                                                                                  \
+            dots[0] += p * x, dots[1] += p * y, dots[2] += p * z;                                                      \
+            dots[3] += q * x, dots[4] += q * y, dots[5] += q * z;                                                      \
+            dots[6] += r * x, dots[7] += r * y, dots[8] += r * z;                                                      \
+        }                                                                                                              \
     }
-}
+GXSP_NINE_DOTS(gxsp_nine_dots, float, GXSP_WIDEN)
+GXSP_NINE_DOTS(gxsp_nine_double_dots, double, GXSP_LOAD_DOUBLES)
 
 /* As gxsp_factor_left, in place */
 static void gxsp_nested_left(const gxsp_system *system, uint32_t i) {
@@ -8379,7 +8385,7 @@ static void gxsp_nested_left(const gxsp_system *system, uint32_t i) {
     for (j = first; j < i; j += 3) {
         m = factor->first[j / 3] > first ? factor->first[j / 3] : first;
         for (r = 0; r < 3; r++) other[r] = gxsp_nested_row(system, j + r);
-        gxsp_nine_double_dots(own, other, m, j - m, dots);
+        gxsp_nine_double_dots(own, other, m, j, dots);
         for (r = 0; r < 3; r++) {
             double *sum = own[r] + j;
             sum[0] = (sum[0] - dots[3 * r]) * other[0][j];
@@ -8532,55 +8538,23 @@ static void gxsp_fill_factor(gxsp_factor *factor, const gxsp_level *level, uint3
                 }
 }
 
-/* dots[3 r + c] = row r of a times row c of b, in four sums side by side. The three rows of a are n apart. */
-static void gxsp_nine_dots(const double *GXSP_RESTRICT a, size_t n, const float *const *b, size_t count,
-                           double *GXSP_RESTRICT dots) {
-    size_t k = 0;
-#if defined(GXSP_SHUFFLES)
-    gxsp_doubles s0 = GXSP_NO_DOUBLES, s1 = s0, s2 = s0, s3 = s0, s4 = s0, s5 = s0, s6 = s0, s7 = s0, s8 = s0;
-    for (; k + GXSP_DOUBLES <= count; k += GXSP_DOUBLES) {
-        const gxsp_doubles x = GXSP_WIDEN(b[0] + k), y = GXSP_WIDEN(b[1] + k), z = GXSP_WIDEN(b[2] + k);
-        const gxsp_doubles p = GXSP_LOAD_DOUBLES(a + k), q = GXSP_LOAD_DOUBLES(a + n + k),
-                           r = GXSP_LOAD_DOUBLES(a + 2 * n + k);
-        GXSP_ADD_PRODUCT(s0, p, x), GXSP_ADD_PRODUCT(s1, p, y), GXSP_ADD_PRODUCT(s2, p, z);
-        GXSP_ADD_PRODUCT(s3, q, x), GXSP_ADD_PRODUCT(s4, q, y), GXSP_ADD_PRODUCT(s5, q, z);
-        GXSP_ADD_PRODUCT(s6, r, x), GXSP_ADD_PRODUCT(s7, r, y), GXSP_ADD_PRODUCT(s8, r, z);
-    }
-    dots[0] = GXSP_SUM_DOUBLES(s0), dots[1] = GXSP_SUM_DOUBLES(s1), dots[2] = GXSP_SUM_DOUBLES(s2);
-    dots[3] = GXSP_SUM_DOUBLES(s3), dots[4] = GXSP_SUM_DOUBLES(s4), dots[5] = GXSP_SUM_DOUBLES(s5);
-    dots[6] = GXSP_SUM_DOUBLES(s6), dots[7] = GXSP_SUM_DOUBLES(s7), dots[8] = GXSP_SUM_DOUBLES(s8);
-#else
-    memset(dots, 0, 9 * sizeof *dots);
-#endif
-    for (; k < count; k++) {
-        const double x = (double)b[0][k], y = (double)b[1][k], z = (double)b[2][k], p = a[k], q = a[n + k],
-                     r = a[2 * n + k];
-        dots[0] += p * x, dots[1] += p * y, dots[2] += p * z;
-        dots[3] += q * x, dots[4] += q * y, dots[5] += q * z;
-        dots[6] += r * x, dots[7] += r * y, dots[8] += r * z;
-    }
-}
-
 /* Columns of the factor to the left of a node's own, in its three rows from row i on */
 static void gxsp_factor_left(gxsp_factor *factor, uint32_t i) {
     const uint32_t first = factor->first[i / 3], n = factor->n;
-    float *own[3];
+    float *own[3], *other[3];
+    double *rows[3], dots[9];
     uint32_t j, m, r, c;
     for (r = 0; r < 3; r++) {
         own[r] = gxsp_factor_row(factor, i + r);
-        for (j = first; j <= i + r; j++) factor->rows[r * (size_t)n + j] = (double)own[r][j];
+        rows[r] = factor->rows + r * (size_t)n;
+        for (j = first; j <= i + r; j++) rows[r][j] = (double)own[r][j];
     }
     for (j = first; j < i; j += 3) {
-        const float *other[3], *from[3];
-        double dots[9];
         m = factor->first[j / 3] > first ? factor->first[j / 3] : first;
-        for (c = 0; c < 3; c++) {
-            other[c] = gxsp_factor_row(factor, j + c);
-            from[c] = other[c] + m;
-        }
-        gxsp_nine_dots(factor->rows + m, n, from, j - m, dots);
+        for (c = 0; c < 3; c++) other[c] = gxsp_factor_row(factor, j + c);
+        gxsp_nine_dots(rows, other, m, j, dots);
         for (r = 0; r < 3; r++) {
-            double *sum = factor->rows + r * (size_t)n + j;
+            double *sum = rows[r] + j;
             sum[0] = (sum[0] - dots[3 * r]) * (double)other[0][j];
             sum[1] = (sum[1] - dots[3 * r + 1] - (double)other[1][j] * sum[0]) * (double)other[1][j + 1];
             sum[2] = (sum[2] - dots[3 * r + 2] - (double)other[2][j] * sum[0] - (double)other[2][j + 1] * sum[1]) *
@@ -10053,8 +10027,9 @@ static int gxsp_join_levels(gxsp_system *system) {
     gxsp_pool scratch = gxsp_pool_make(&system->pool.allocator);
     int joins = 0;
     size_t t;
+    if (system->affine.count == 0) return 1;
     for (t = 0; t < system->lasting->count && !joins; t++) joins = system->lasting->term[t].spread > 0;
-    if (system->affine.count == 0 || !(joins || system->multigrid.joined)) return 1;
+    if (!joins && !system->multigrid.joined) return 1;
     system->multigrid.joined = joins;
     gxsp_release_to(&system->multigrid.pool, system->multigrid.mark);
     gxsp_edges_make(system, &scratch);
@@ -14389,6 +14364,8 @@ GXFEM_API void gxs_material_product(const gxs_material *material, const double *
 #undef GXSP_NO_DOUBLES
 #undef GXSP_LOAD_DOUBLES
 #undef GXSP_WIDEN
+#undef GXSP_NINE_SUMS
+#undef GXSP_NINE_DOTS
 #undef GXSP_ADD_PRODUCT
 #undef GXSP_SUM_DOUBLES
 #undef GXSP_NESTED_SLACK
