@@ -154,16 +154,16 @@ web_files = index.html page.js worker.js player.css player.js jelly.wasm jelly-s
 web: $(web_files:%=$(BUILD)/web/%)
 	@echo "look      serve $(BUILD)/web, for example: python3 -m http.server -d $(BUILD)/web"
 
-# What the page loads has no comments: those that begin and end lines.
-without_comments = awk '!inside && /^ *\/\*/ { inside = 1 } !inside; inside && /\*\/ *$$/ { inside = 0 }'
+# What the page loads has no comments, but for those within a line, no empty lines and no indents.
+bare = awk '!inside { sub(/^ +/, ""); sub(/ *\/\*[^*]*\*\/ *$$/, "") } !inside && /^ *\/\*/ { inside = 1 } !inside && NF; inside && /\*\/ *$$/ { inside = 0 }'
 
 $(BUILD)/web/%: examples/web/%
 	@mkdir -p $(@D)
-	@$(without_comments) $< >$@
+	@$(bare) $< >$@
 
 $(BUILD)/web/player.css $(BUILD)/web/player.js: $(BUILD)/web/%: examples/%
 	@mkdir -p $(@D)
-	@$(without_comments) $< >$@
+	@$(bare) $< >$@
 
 # From clang 16 on vectors are right (gxfem_boolean.h): a step then takes two thirds of the time. Sizes and times are those of
 # instructions that all browsers have had since 2021, and of an instruction in place of a call for a square root.
