@@ -612,8 +612,10 @@ GXFEM_API gx_result gx_body_model(gx_body *body, gxs_model *model, gx_failure *f
    friction, stay with the material through cuts. A piece's own thickness is no contact: a facet is left out if it was
    near at rest and the vertex did not face it then, or was behind it. Pieces press on the caller's rigid bodies as
    well: see gx_step_desc.colliders. Samples are the vertices of the surface; facets on which the distance from a
-   collider bends have more of them. Each is joined to the tangent plane of the collider there, by c E A / h. A collider
-   that is inside a piece is seen at any depth. */
+   collider bends have more of them. Each is joined to the tangent plane of the collider there, by c E A / h. A ball,
+   capsule or box whose middle comes near the skin, or is inside a piece, is deep: skin that faces the mean way out of
+   the piece around it is pushed below it, not aside, so that a small one is not swallowed. Colliders given by a
+   distance are pushed out the nearest way only. */
 typedef struct gx_contact_desc {
     double stiffness;      /* c; 0: 10. Iterations of a step grow with its root */
     double friction;       /* Coulomb's coefficient, 0 or more */
@@ -837,8 +839,9 @@ GXFEM_API gx_blade *gx_body_blade(const gx_body *body, size_t index);
    of an element, 8 for each element of the body's length at most. A move that changes little is remembered and worked
    out later, before the path bends. edge: point_count x 3, in space, m; as many points at
    each move until the blade is lifted, 2 or more; ends may be 10^12 elements away. scope: fragments that alone are cut,
-   below gx_view.fragment_count; count 0: all. On an error body and blade are as they were. Errors: ARGUMENT (also:
-   the first edge is inside the material and starts_inside is 0, index: point), INDEX, NOT_FINITE and RANGE (edge, or
+   below gx_view.fragment_count; count 0: all. On an error body and blade are as they were. Errors: ARGUMENT
+   (also "starts_inside": it is 0, and the first edge is inside the material; index: the point at or after that place),
+   INDEX, NOT_FINITE and RANGE (edge, or
    "displacement", index: copy, or SIZE_MAX if the body is deformed so that a place of the edge has no material point in
    doubles), LIMIT, MEMORY. */
 GXFEM_API gx_result gx_blade_move(gx_blade *blade, const double *edge, size_t point_count,
@@ -1586,6 +1589,11 @@ typedef struct gxp_touch_surface { /* facets by fragment, then as they lie in sp
     gxp_words sides;   /* of tips: tip, vertex of one of its sides; see gxp_add_tips */
 } gxp_touch_surface;
 
+typedef struct gxp_touch_deep { /* a collider whose middle is behind the skin, or hardly in front of it */
+    uint32_t fragment;          /* that has it; GXP_NONE: none has */
+    double out[3], way;         /* from the middle to the skin: the direction; m, 0 in front of it */
+} gxp_touch_deep;
+
 typedef struct gxp_touch_pair {  /* of a step */
     uint32_t sample;             /* see gxp_touch_state */
     uint32_t parts;              /* of a facet's edges */
@@ -1655,10 +1663,11 @@ typedef struct gxp_touch {
     int (*filter)(void *user, uint32_t fragment, uint32_t other, uint32_t collider);
     void *filter_user;
     uint32_t collider_count;
-    gxp_keys named;    /* id, place of a collider; ascending */
-    gxp_words changed; /* of each collider: 1 if it moves or is not as it was in the last step */
+    gxp_keys named;       /* id, place of a collider; ascending */
+    gxp_words changed;    /* of each collider: 1 if it moves or is not as it was in the last step */
+    gxp_touch_deep *deep; /* of each collider */
     gxp_touch_beside *beside;
-    uint32_t beside_capacity;
+    uint32_t beside_capacity, deep_capacity;
     gxp_touch_pair *pairs;
     double *moved;           /* vertices x 9: position and velocity in space, outward normal */
     double *facing;          /* facets x 3: normals in space, of length 1, or 0 */
@@ -2019,6 +2028,7 @@ static const gxp_column gxp_lists[] = {
     GXP_LIST(touch.forces, touch.force_capacity, 3 * sizeof(double)),
     GXP_KEYS(touch.order), GXP_WORDS(touch.ranked), GXP_KEYS(touch.named), GXP_WORDS(touch.changed),
     GXP_LIST(touch.beside, touch.beside_capacity, sizeof(gxp_touch_beside)), GXP_KEYS(touch.placed),
+    GXP_LIST(touch.deep, touch.deep_capacity, sizeof(gxp_touch_deep)),
     GXP_KEYS(touch.edges), GXP_KEYS(touch.members), GXP_WORDS(touch.roles),
     GXP_WORDS(scratch.removed), GXP_KEYS(scratch.removed_of), GXP_WORDS(scratch.pinches), GXP_WORDS(scratch.touched),
     GXP_WORDS(scratch.new_cells),
@@ -7351,8 +7361,8 @@ static gx_result gxp_check_sphere(const gx_body *body, const gxp_region *r, size
     return r->radius > 0 ? GX_OK : gxp_fail(failure, GX_ERROR_ARGUMENT, "regions.radius", index);
 }
 
-/* Is the surface closed, its triangles oriented alike? */
-static gx_result gxp_check_shell(gx_body *body, const gx_surface *shell, size_t index, gx_failure *failure) {
+/* Is the surface closed, its triangles oriented alike? If not, *triangle receives one at the boundary. */
+static gx_result gxp_check_shell(gx_body *body, const gx_surface *shell, size_t *triangle) {
     const gx_allocator *a = &body->config.allocator;
     const size_t merged = shell->vertex_count * sizeof(uint32_t),
                  edges = 3 * shell->triangle_count * sizeof(gxp_half_edge);
@@ -7371,8 +7381,8 @@ static gx_result gxp_check_shell(gx_body *body, const gx_surface *shell, size_t 
     }
     gxp_release(a, s.merged, merged);
     gxp_release(a, s.edges, edges);
-    return result == GX_ERROR_NOT_CLOSED ? gxp_fail(failure, result, "regions.surface.triangles", index)
-                                         : gxp_end(failure, result);
+    *triangle = cut.failure.index;
+    return result;
 }
 
 /* The closed surface of a region, in the body's arrays */
@@ -7388,15 +7398,18 @@ static gx_surface gxp_region_shell(const gx_body *body, const gxp_region *r) {
 
 static gx_result gxp_check_region_surface(gx_body *body, const gxp_region *r, size_t index, gx_failure *failure) {
     const gx_surface shell = gxp_region_shell(body, r);
+    gx_result result;
     size_t i;
     for (i = 0; i < shell.vertex_count; i++) {
-        const gx_result result = gxb_complex_check_point(body->complex, shell.vertices + 3 * i);
+        result = gxb_complex_check_point(body->complex, shell.vertices + 3 * i);
         if (result != GX_OK) return gxp_fail(failure, result, "regions.surface.vertices", index);
     }
     for (i = 0; i < 3 * shell.triangle_count; i++)
         if (shell.triangles[i] >= shell.vertex_count)
             return gxp_fail(failure, GX_ERROR_INDEX, "regions.surface.triangles", index);
-    return gxp_check_shell(body, &shell, index, failure);
+    result = gxp_check_shell(body, &shell, &i);
+    return result == GX_ERROR_NOT_CLOSED ? gxp_fail(failure, result, "regions.surface.triangles", index)
+                                         : gxp_end(failure, result);
 }
 
 static gx_result gxp_check_region_lists(const gx_body *body, const gxp_region *r, size_t index, gx_failure *failure) {
@@ -12573,6 +12586,8 @@ static gx_result gxp_refresh_contact(gx_body *body) {
 #define GXP_TOUCH_FLAT  0.995
 /* In sizes of an element: gaps that have a pair if the step may make them smaller */
 #define GXP_TOUCH_NEAR 0.02
+/* A collider is deep in a piece if its middle is in front of the skin by less than this share of its half thickness */
+#define GXP_TOUCH_DEEP 0.5
 
 /* Signed distance from a ball around the origin */
 static double gxp_ball_distance(const double p[3], double radius, double normal[3]) {
@@ -12684,26 +12699,181 @@ static int gxp_comes_near(const gx_collider *c, double size, double dt, gxp_appr
     return 0;
 }
 
-/* Does a sample meet a collider within the step? It then gets the tangent plane of the collider where the two meet,
-   moving with the collider. x: position and velocity of the sample. pair: sample, collider, share and area are set;
-   receives all else. *wild: 1: the caller's distance is not a number */
+/* Gives a pair the tangent plane of its collider where its sample comes near that, moving with the collider. x:
+   position of the sample in space; gap: to the plane; approach: to it, m/s */
+static void gxp_set_plane(const gx_collider *c, const double x[3], const gxp_approach *a, double gap, double approach,
+                          double dt, gxp_touch_pair *pair) {
+    int k;
+    pair->gap = gap;
+    pair->approach = approach;
+    gxp_from_collider(c, a->normal, pair->normal);
+    for (k = 0; k < 3; k++) pair->place[k] = x[k] - gap * pair->normal[k];
+    gxp_collider_velocity(c, pair->place, pair->way);
+    for (k = 0; k < 3; k++) pair->way[k] *= dt;
+}
+
+/* Does a sample meet a collider within the step? x: position and velocity of the sample. pair: sample, collider, share
+   and area are set; receives all else. *wild: 1: the caller's distance is not a number */
 static int gxp_meets_collider(const gx_body *body, const double x[6], double size, double dt, gxp_touch_pair *pair,
                               int *wild) {
     const gx_collider *c = &body->touch.colliders[pair->collider];
     gxp_approach a = gxp_make_approach(c, x);
-    int k;
+    double approach;
     pair->other = c->id;
     if (!gxp_comes_near(c, size, dt, &a)) {
         *wild |= a.wild;
         return 0;
     }
-    pair->approach = -gxp_dot(a.normal, a.motion);
-    pair->gap = a.distance + a.time * pair->approach;
-    gxp_from_collider(c, a.normal, pair->normal);
-    for (k = 0; k < 3; k++) pair->place[k] = x[k] - pair->gap * pair->normal[k];
-    gxp_collider_velocity(c, pair->place, pair->way);
-    for (k = 0; k < 3; k++) pair->way[k] *= dt;
+    approach = -gxp_dot(a.normal, a.motion);
+    gxp_set_plane(c, x, &a, a.distance + a.time * approach, approach, dt, pair);
     return 1;
+}
+
+/* The radius of the largest balls in a collider, m; 0: it has no middle */
+static double gxp_collider_half(const gx_collider *c) {
+    if (c->kind == GX_COLLIDER_BOX) return fmin(c->size[0], fmin(c->size[1], c->size[2]));
+    return c->kind == GX_COLLIDER_SPHERE || c->kind == GX_COLLIDER_CAPSULE ? c->size[0] : 0;
+}
+
+/* The radius of a ball about a collider's origin that has all of it, m */
+static double gxp_collider_reach(const gx_collider *c) {
+    if (c->kind == GX_COLLIDER_BOX) return sqrt(gxp_dot(c->size, c->size));
+    return c->size[0] + (c->kind == GX_COLLIDER_CAPSULE ? c->size[1] : 0);
+}
+
+/* Does a sample meet a collider that is deep in its piece? The sample is to be below the collider, seen along deep.out,
+   however far above it is: it meets the first place of the collider on its way from there. The nearest place would be
+   beside it, or above it: a small collider would part facets that are larger than it is, and be swallowed. */
+static int gxp_meets_deep(const gx_body *body, const double x[6], double size, double dt, gxp_touch_pair *pair) {
+    const gx_collider *c = &body->touch.colliders[pair->collider];
+    gxp_approach a = gxp_make_approach(c, x), way = a;
+    double out[3], length, above, approach;
+    int k;
+    gxp_to_collider(c, body->touch.deep[pair->collider].out, out);
+    length = fmax(0, gxp_dot(a.at, out) + gxp_collider_reach(c));
+    above = GXP_TOUCH_NEAR * size + dt * fmax(0, gxp_dot(a.motion, out));
+    for (k = 0; k < 3; k++) {
+        way.at[k] -= length * out[k];
+        way.motion[k] = (length + above) * out[k];
+    }
+    if (!gxp_comes_near(c, fmin(size, gxp_collider_half(c)), 1, &way)) return 0;
+    pair->other = c->id;
+    approach = -gxp_dot(way.normal, a.motion);
+    gxp_set_plane(c, x, &way, way.distance + (length - way.time * (length + above)) * gxp_dot(way.normal, out),
+                  approach, dt, pair);
+    return 1;
+}
+
+/* Facets around a place in space */
+typedef struct gxp_setting {
+    double x[3], reach; /* m */
+    uint32_t facet;     /* the nearest one; GXP_NONE: none is within reach */
+    int in_front;       /* of one of those that are nearest */
+    double square;      /* m2: to it */
+    double mean[3];     /* m2: of normals of its piece, by area and nearness */
+} gxp_setting;
+
+/* The square of the distance from a facet. to: the way there */
+static double gxp_way_to_facet(const gxp_touch *t, const gxp_touch_surface *s, const gxp_setting *a, uint32_t facet,
+                               double to[3]) {
+    double p[3][3], share[3] = {0, 0, 0}, square;
+    int i, k;
+    for (i = 0; i < 3; i++)
+        for (k = 0; k < 3; k++) p[i][k] = t->moved[9 * (size_t)s->facets[facet].vertex[i] + (size_t)k] - a->x[k];
+    square = gxp_near_triangle(p, GXP_TREE_ALL, share);
+    for (k = 0; k < 3; k++) to[k] = share[0] * p[0][k] + share[1] * p[1][k] + share[2] * p[2][k];
+    return square;
+}
+
+static void gxp_try_nearest(const gxp_touch *t, const gxp_touch_surface *s, uint32_t facet, gxp_setting *a) {
+    const double *n = t->facing + 3 * (size_t)facet;
+    double to[3];
+    const double square = gxp_way_to_facet(t, s, a, facet, to);
+    if (square > a->square * (1 + 1e-9) || gxp_dot(n, n) == 0) return;
+    if (square < a->square * (1 - 1e-9)) a->in_front = 0;
+    a->in_front |= gxp_dot(to, n) < 0;
+    if (square >= a->square) return;
+    a->square = square;
+    a->facet = facet;
+}
+
+/* Adds a facet's normal to the mean if it is within reach. */
+static void gxp_add_normal(const gxp_touch *t, const gxp_touch_surface *s, uint32_t facet, gxp_setting *a) {
+    double to[3], n[3], far;
+    int k;
+    if (s->facets[facet].fragment != s->facets[a->facet].fragment) return;
+    far = sqrt(gxp_way_to_facet(t, s, a, facet, to)) / a->reach;
+    gxp_facet_normal(s, &s->facets[facet], n);
+    for (k = 0; k < 3 && far < 1; k++)
+        a->mean[k] += (1 - far) * sqrt(gxp_dot(n, n)) * t->facing[3 * (size_t)facet + (size_t)k];
+}
+
+/* Calls a function for all facets in boxes that are not further away than reach. */
+static void gxp_go_around(const gxp_touch *t, const gxp_touch_surface *s, gxp_setting *a,
+                          void (*visit)(const gxp_touch *, const gxp_touch_surface *, uint32_t, gxp_setting *)) {
+    uint32_t stack[64], count = 0, i;
+    stack[count++] = 0;
+    while (count > 0) {
+        const uint32_t box = stack[--count];
+        const gxp_bounds *b = &t->boxes[box].from;
+        double square = 0;
+        int k;
+        for (k = 0; k < 3; k++) {
+            const double beside = fmax(0, fmax(b->low[k] - a->x[k], a->x[k] - b->high[k]));
+            square += beside * beside;
+        }
+        if (!(square <= a->square)) continue;
+        if (box + 1 < t->leaf_count) {
+            stack[count++] = 2 * box + 2;
+            stack[count++] = 2 * box + 1;
+            continue;
+        }
+        for (i = GXP_TOUCH_LEAF * (box + 1 - t->leaf_count);
+             i < GXP_TOUCH_LEAF * (box + 2 - t->leaf_count) && i < s->facet_count; i++)
+            visit(t, s, i, a);
+    }
+}
+
+/* Is a place that is the middle of a collider deep in a piece? *least: m: its height over the skin; receives it. The
+   way out is the mean one, so that it changes little from step to step. */
+static void gxp_judge_middle(const gxp_touch *t, const gxp_touch_surface *s, const double x[3], double half,
+                             double *least, gxp_touch_deep *deep) {
+    const gxp_bounds *b = &t->boxes[0].from;
+    gxp_setting a;
+    double height;
+    int k;
+    memset(&a, 0, sizeof a);
+    memcpy(a.x, x, sizeof a.x);
+    a.facet = GXP_NONE;
+    a.square = GXP_TREE_ALL;
+    for (k = 0; k < 3; k++)
+        if (x[k] < b->low[k] - *least || x[k] > b->high[k] + *least) return;
+    gxp_go_around(t, s, &a, gxp_try_nearest);
+    if (a.facet == GXP_NONE) return;
+    height = a.in_front ? sqrt(a.square) : -sqrt(a.square);
+    if (!(height < *least)) return;
+    *least = height;
+    a.reach = sqrt(a.square) + 2 * half;
+    a.square = a.reach * a.reach;
+    gxp_go_around(t, s, &a, gxp_add_normal);
+    deep->fragment = gxp_unit(a.mean, deep->out) ? s->facets[a.facet].fragment : GXP_NONE;
+    deep->way = fmax(0, -height);
+}
+
+/* Is a collider deep in a piece? Of a capsule, both ends of the axis and its middle are asked for. */
+static void gxp_judge_deep(const gxp_touch *t, const gxp_touch_surface *s, const gx_collider *c, gxp_touch_deep *deep) {
+    const double half = gxp_collider_half(c);
+    const int last = c->kind == GX_COLLIDER_CAPSULE ? 2 : 0;
+    double least = GXP_TOUCH_DEEP * half;
+    int i;
+    memset(deep, 0, sizeof *deep);
+    deep->fragment = GXP_NONE;
+    for (i = 0; i <= last && half > 0; i++) {
+        const double along = last > 0 ? (i - 1) * c->size[1] : 0;
+        const double x[3] = {c->pose[3] + along * c->pose[2], c->pose[7] + along * c->pose[6],
+                             c->pose[11] + along * c->pose[10]};
+        gxp_judge_middle(t, s, x, half, &least, deep);
+    }
 }
 
 /* The length, m, of what a collider may have between samples, at most; an element's size if it is not known */
@@ -12715,13 +12885,19 @@ static double gxp_collider_feature(const gx_collider *c, double size) {
     return c->kind == GX_COLLIDER_DISTANCE && c->size[0] > 0 ? c->size[0] : least;
 }
 
+/* Into how many parts the edges of a facet are divided on which the distance from a collider bends */
+static uint32_t gxp_fine_parts(const gx_collider *c, double size, double longest) {
+    const double parts = ceil(GXP_TOUCH_FINE * longest / fmax(gxp_collider_feature(c, size), 1e-3 * size));
+    return parts < GXP_TOUCH_PARTS ? (uint32_t)fmax(1, parts) : GXP_TOUCH_PARTS;
+}
+
 /* Into how many parts the edges of a facet are divided for samples beside a collider: 1 where the distance is as good
    as linear on it, so that its corners tell all. 0: it does not come near. */
 static uint32_t gxp_facet_parts(const gx_body *body, const gxp_touch_surface *s, double dt, uint32_t facet,
                                 const gx_collider *c, int *wild) {
     const gxp_touch_facet *f = &s->facets[facet];
     const double size = s->vertices[f->vertex[0]].size;
-    double normal[3][3], center[3] = {0, 0, 0}, reach = 0, nearest = HUGE_VAL, longest = 0, parts;
+    double normal[3][3], center[3] = {0, 0, 0}, reach = 0, nearest = HUGE_VAL, longest = 0;
     gxp_approach corner[3];
     int i, k, bent = 0;
     for (i = 0; i < 3; i++) {
@@ -12742,8 +12918,28 @@ static uint32_t gxp_facet_parts(const gx_body *body, const gxp_touch_surface *s,
     if (*wild || !bent) return 1;
     if (nearest > GXP_TOUCH_NEAR * size && gxp_collider_distance(c, center, normal[0]) > reach + GXP_TOUCH_NEAR * size)
         return 0;
-    parts = ceil(GXP_TOUCH_FINE * longest / fmax(gxp_collider_feature(c, size), 1e-3 * size));
-    return parts < GXP_TOUCH_PARTS ? (uint32_t)fmax(1, parts) : GXP_TOUCH_PARTS;
+    return gxp_fine_parts(c, size, longest);
+}
+
+/* The same if the collider is deep in the facet's piece: of what faces the way out, above or below the collider */
+static uint32_t gxp_deep_parts(const gxp_touch *t, const gxp_touch_surface *s, uint32_t facet, uint32_t collider) {
+    const gx_collider *c = &t->colliders[collider];
+    const gxp_touch_facet *f = &s->facets[facet];
+    const double *out = t->deep[collider].out, *corner[3];
+    double beside[3], along, longest = 0;
+    int i, k;
+    if (!(gxp_dot(t->facing + 3 * (size_t)facet, out) > 0)) return 0;
+    for (i = 0; i < 3; i++) corner[i] = t->moved + 9 * (size_t)f->vertex[i];
+    for (i = 0; i < 3; i++) {
+        double edge[3];
+        for (k = 0; k < 3; k++) edge[k] = corner[i][k] - corner[(i + 1) % 3][k];
+        longest = fmax(longest, sqrt(gxp_dot(edge, edge)));
+    }
+    for (k = 0; k < 3; k++) beside[k] = corner[0][k] - c->pose[4 * k + 3];
+    along = gxp_dot(beside, out);
+    for (k = 0; k < 3; k++) beside[k] -= along * out[k];
+    if (sqrt(gxp_dot(beside, beside)) > gxp_collider_reach(c) + longest) return 0;
+    return gxp_fine_parts(c, s->vertices[f->vertex[0]].size, longest);
 }
 
 /* Lists a sample for the search of pairs with a collider. */
@@ -12761,12 +12957,21 @@ static gx_result gxp_list_sample(gx_body *body, uint32_t sample, uint32_t collid
     return GX_OK;
 }
 
+/* Into how many parts the edges of a facet are divided for samples beside a collider; 0: it does not come near */
+static uint32_t gxp_collider_parts(const gx_body *body, const gxp_touch_surface *s, double dt, uint32_t facet,
+                                   uint32_t collider, int *wild) {
+    const gx_collider *c = &body->touch.colliders[collider];
+    if (c->kind == GX_COLLIDER_PLANE) return 1;
+    if (body->touch.deep[collider].fragment == s->facets[facet].fragment)
+        return gxp_deep_parts(&body->touch, s, facet, collider);
+    return gxp_facet_parts(body, s, dt, facet, c, wild);
+}
+
 /* Lists the samples of a facet: its corners, each with a third of its area, or the facet, which has many. */
 static gx_result gxp_list_samples(gx_body *body, const gxp_touch_surface *s, double dt, uint32_t facet,
                                   uint32_t collider, int *wild) {
     const gxp_touch_facet *f = &s->facets[facet];
-    const gx_collider *c = &body->touch.colliders[collider];
-    const uint32_t parts = c->kind == GX_COLLIDER_PLANE ? 1 : gxp_facet_parts(body, s, dt, facet, c, wild);
+    const uint32_t parts = gxp_collider_parts(body, s, dt, facet, collider, wild);
     double n[3], layers;
     gx_result result = GX_OK;
     int k;
@@ -12806,7 +13011,8 @@ static gx_result gxp_list_beside(gx_body *body, const gxp_touch_surface *s, doub
             *wild = 1;
             return result;
         }
-        if (d > half + GXP_TOUCH_NEAR * s->largest + dt * (speed + turn * (far + half))) continue;
+        if (d > half + t->deep[collider].way + GXP_TOUCH_NEAR * s->largest + dt * (speed + turn * (far + half)))
+            continue;
         if (box + 1 < t->leaf_count) {
             stack[count++] = 2 * box + 2;
             stack[count++] = 2 * box + 1;
@@ -12826,6 +13032,7 @@ static gx_result gxp_list_all_beside(gx_body *body, const gxp_touch_surface *s, 
     body->touch.order.count = 0;
     for (i = 0; i < body->touch.collider_count && s->facet_count > 0 && result == GX_OK; i++) {
         int wild = 0;
+        gxp_judge_deep(&body->touch, s, &body->touch.colliders[i], &body->touch.deep[i]);
         result = gxp_list_beside(body, s, dt, i, &wild);
         if (wild) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "colliders.distance", i);
     }
@@ -12898,6 +13105,8 @@ static gx_result gxp_take_colliders(gx_body *body, const gx_step_desc *desc, gx_
     if (result != GX_OK) return result;
     result = gxp_keys_room(body, &t->named, 2 * count);
     if (result == GX_OK) result = gxp_words_room(body, &t->changed, count);
+    if (result == GX_OK)
+        result = gxp_reserve(&body->config.allocator, &t->deep, sizeof *t->deep, 0, &t->deep_capacity, count);
     if (result == GX_OK)
         result = gxp_reserve(&body->config.allocator, &t->known, sizeof *t->known, t->known_count, &t->known_capacity,
                              count > t->known_count ? count - t->known_count : 0);
@@ -13681,14 +13890,22 @@ static gx_result gxp_list_pair(gx_body *body, const gxp_touch_surface *s, const 
     return GX_OK;
 }
 
+/* Does a sample meet a collider within the step? x: its position and velocity; outward: its normal, in space */
+static int gxp_meets_any(const gx_body *body, const gxp_touch_surface *s, const double x[6], const double outward[3],
+                         double dt, gxp_touch_pair *pair, int *wild) {
+    const gxp_touch_vertex *v = gxp_sample_vertex(s, pair->sample);
+    const gxp_touch_deep *deep = &body->touch.deep[pair->collider];
+    if (deep->fragment != v->fragment) return gxp_meets_collider(body, x, v->size, dt, pair, wild);
+    return gxp_dot(outward, deep->out) > 0 && gxp_meets_deep(body, x, v->size, dt, pair);
+}
+
 /* Lists the pair of a vertex with a collider, if they meet. */
 static gx_result gxp_seek_at_vertex(gx_body *body, const gxp_touch_surface *s, double dt, gxp_touch_pair *pair,
                                     gx_failure *failure) {
-    const gxp_touch_vertex *v = &s->vertices[pair->sample];
+    const double *x = body->touch.moved + 9 * (size_t)pair->sample;
     int wild = 0;
-    memcpy(pair->rest, v->rest, sizeof pair->rest);
-    if (gxp_meets_collider(body, body->touch.moved + 9 * (size_t)pair->sample, v->size, dt, pair, &wild))
-        return gxp_list_pair(body, s, pair, failure);
+    memcpy(pair->rest, s->vertices[pair->sample].rest, sizeof pair->rest);
+    if (gxp_meets_any(body, s, x, x + 6, dt, pair, &wild)) return gxp_list_pair(body, s, pair, failure);
     return wild ? gxp_fail(failure, GX_ERROR_NOT_FINITE, "colliders.distance", pair->collider) : GX_OK;
 }
 
@@ -13713,7 +13930,8 @@ static gx_result gxp_seek_on_facet(gx_body *body, const gxp_touch_surface *s, do
                 for (m = 0; m < 6; m++) x[m] += pair->share[n] * body->touch.moved[9 * (size_t)f->vertex[n] + m];
                 for (m = 0; m < 3; m++) pair->rest[m] += pair->share[n] * s->vertices[f->vertex[n]].rest[m];
             }
-            if (gxp_meets_collider(body, x, s->vertices[f->vertex[0]].size, dt, pair, &wild))
+            if (gxp_meets_any(body, s, x, body->touch.facing + 3 * (size_t)(pair->sample - s->vertex_count), dt, pair,
+                              &wild))
                 result = gxp_list_pair(body, s, pair, failure);
             if (wild) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "colliders.distance", pair->collider);
         }
@@ -17458,7 +17676,6 @@ static gx_result gxp_cut_surfaces(gx_blade *blade, uint32_t kind, gx_blade_repor
     least.thickness = blade->tolerance;
     result = gxp_cut_body(body, &desc, kind == GX_SURFACE_SHEET ? &least : NULL, &report->cut, failure);
     if (result == GX_OK) return result;
-    if (result == GX_ERROR_NOT_CLOSED) return gxp_fail(failure, result, "tool.triangles", SIZE_MAX);
     /* edge and tool are in range: what takes their material points out of it is how the body is deformed */
     if (result == GX_ERROR_NOT_FINITE || result == GX_ERROR_RANGE)
         return gxp_fail(failure, result, "displacement", SIZE_MAX);
@@ -17471,7 +17688,7 @@ static gx_result gxp_check_start(gx_blade *blade, gx_failure *failure) {
     if (blade->starts_inside || blade->now.edge.count > 0) return GX_OK;
     for (i = 0; i < blade->front.count; i++)
         if (!(blade->front.data[i].distance > 0))
-            return gxp_fail(failure, GX_ERROR_ARGUMENT, "edge", (size_t)ceil(blade->front.data[i].along));
+            return gxp_fail(failure, GX_ERROR_ARGUMENT, "starts_inside", (size_t)ceil(blade->front.data[i].along));
     return GX_OK;
 }
 
@@ -18509,7 +18726,8 @@ static gx_result gxp_carve_layers(gx_blade *blade, const gx_surface *tool, gx_bl
     return gxp_cut_surfaces(blade, GX_SURFACE_SOLID, report, failure);
 }
 
-static gx_result gxp_check_tool(const gx_surface *tool, gx_failure *failure) {
+static gx_result gxp_check_tool(gx_body *body, const gx_surface *tool, gx_failure *failure) {
+    gx_result result;
     size_t i;
     if (tool->vertex_count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "tool.vertex_count", SIZE_MAX);
     if (tool->triangle_count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "tool.triangle_count", SIZE_MAX);
@@ -18525,7 +18743,8 @@ static gx_result gxp_check_tool(const gx_surface *tool, gx_failure *failure) {
     }
     for (i = 0; i < 3 * tool->triangle_count; i++)
         if (tool->triangles[i] >= tool->vertex_count) return gxp_fail(failure, GX_ERROR_INDEX, "tool.triangles", i / 3);
-    return GX_OK;
+    result = gxp_check_shell(body, tool, &i);
+    return result == GX_ERROR_NOT_CLOSED ? gxp_fail(failure, result, "tool.triangles", i) : gxp_end(failure, result);
 }
 
 GXFEM_API gx_result gx_body_carve(gx_body *body, const gx_surface *tool, gx_cut_report *report, gx_failure *failure) {
@@ -18534,7 +18753,7 @@ GXFEM_API gx_result gx_body_carve(gx_body *body, const gx_surface *tool, gx_cut_
     gx_result result;
     if (body == NULL) return gxp_refuse(failure, "body");
     if (tool == NULL) return gxp_refuse(failure, "tool");
-    result = gxp_check_tool(tool, failure);
+    result = gxp_check_tool(body, tool, failure);
     if (result == GX_OK) result = gx_blade_create(body, NULL, &blade, failure);
     if (result != GX_OK) return result;
     gxp_clear_report(&own);
@@ -20703,6 +20922,7 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_TOUCH_SHARE
 #undef GXP_TOUCH_FACING
 #undef GXP_TOUCH_NEAR
+#undef GXP_TOUCH_DEEP
 #undef GXP_TOUCH_ADVANCES
 #undef GXP_TOUCH_FINE
 #undef GXP_TOUCH_PARTS

@@ -569,7 +569,7 @@ static void check_refused_edge(const call *c, const outcome *o, const stroke *s,
         return;
     }
     if (o->result == GX_ERROR_ARGUMENT && !s->begun && !s->starts_inside) {
-        REQUIRE(strcmp(field_of(o), "edge") == 0 && o->failure.index < c->count, "move: field %s, index %zu",
+        REQUIRE(strcmp(field_of(o), "starts_inside") == 0 && o->failure.index < c->count, "move: field %s, index %zu",
                 field_of(o), o->failure.index);
         return;
     }

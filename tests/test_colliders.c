@@ -529,6 +529,47 @@ START_TEST(deep_ones_come_out) {
 }
 END_TEST
 
+/* A collider that is smaller than the elements presses on a block, by more than its own size, or begins inside. It
+   stays in front of the skin, and is pushed out. */
+START_TEST(small_ones_are_not_swallowed) {
+    workload w = grid(4, 4, 4, 6);
+    const int inside = _i % 2;
+    gx_collider c = _i < 2 ? collider_of(1, GX_COLLIDER_SPHERE, 0.6, 0, 0, 2.2, 1.9, 4.6)
+                  : _i < 4 ? collider_of(1, GX_COLLIDER_CAPSULE, 0.4, 1.5, 0, 2.1, 1.9, 5.8)
+                           : collider_of(1, GX_COLLIDER_BOX, 0.5, 0.4, 0.3, 2.2, 1.9, 4.4);
+    gx_collider_load load;
+    gx_step_desc step = falling(1.0 / 60);
+    gx_body_desc desc = desc_of(&w);
+    const gx_region base = gx_region_half_space(2, -1, 0.5);
+    gx_body *body = NULL;
+    double depth, most = 0;
+    int frame;
+    desc.young = 2e5;
+    ck_assert_int_eq(gx_body_create(&desc, &body, NULL), GX_OK);
+    switch_on(body);
+    ck_assert_int_eq(gx_body_hold(body, &base, 1, NULL), GX_OK);
+    if (inside) c.pose[11] -= 1.7;
+    c.velocity[2] = inside ? 0 : -2;
+    step.colliders = &c;
+    step.collider_loads = &load;
+    step.collider_count = 1;
+    for (frame = 0; frame < 180; frame++) {
+        if (frame == 48) memset(c.velocity, 0, sizeof c.velocity);
+        take(body, &step);
+        check_reaction(body, &step);
+        advance(&c, step.dt);
+        depth = depth_in(body, &c, 1);
+        most = fmax(most, depth);
+        if (!inside && frame > 3) ck_assert_uint_gt(load.contacts, 0);
+    }
+    if (getenv("GXFEM_VERBOSE")) printf("small %d: depth %g, at most %g, force %g\n", _i, depth, most, load.force[2]);
+    ck_assert_double_gt(load.force[2], 5 * hypot(load.force[0], load.force[1]));
+    ck_assert_double_lt(depth, gxp_collider_half(&c));
+    gx_body_destroy(body);
+    wl_free(&w);
+}
+END_TEST
+
 /* A cut through what stands on colliders leaves their load. */
 START_TEST(cut_on_colliders) {
     workload w = grid(3, 3, 3, 6);
@@ -873,6 +914,7 @@ static Suite *suite(void) {
     tcase_add_loop_test(tests, moving_colliders_move_bodies, 0, FEWER > 1 ? 1 : 3);
     tcase_add_loop_test(tests, fast_ones_are_caught, 0, 3);
     tcase_add_loop_test(tests, deep_ones_come_out, 0, 2);
+    tcase_add_loop_test(tests, small_ones_are_not_swallowed, 0, 6);
     tcase_add_loop_test(tests, cut_on_colliders, 0, 2);
     tcase_add_loop_test(tests, asleep_on_colliders, 0, 10);
     tcase_add_loop_test(tests, sticking_speed_has_a_default, 0, 2);

@@ -326,10 +326,7 @@ START_TEST(colliders_are_found) {
         for (i = 0; i < surface->vertex_count; i++) layers[i] = 0;
         for (f = 0; f < surface->facet_count; f++) {
             const gxp_touch_facet *facet = &surface->facets[f];
-            const double size = surface->vertices[facet->vertex[0]].size;
-            const uint32_t parts = colliders[c].kind == GX_COLLIDER_PLANE
-                                     ? 1
-                                     : gxp_facet_parts(body, surface, none.dt, f, &colliders[c], &wild);
+            const uint32_t parts = gxp_collider_parts(body, surface, none.dt, f, c, &wild);
             const uint32_t fine = parts > 1 ? parts : 12;
             uint32_t a, b, m;
             double x[9], n[3];
@@ -341,7 +338,8 @@ START_TEST(colliders_are_found) {
                     pair.collider = c;
                     for (i = 0; i < 3; i++)
                         for (m = 0; m < 6; m++) at[m] += share[i] * body->touch.moved[9 * (size_t)facet->vertex[i] + m];
-                    if (!gxp_meets_collider(body, at, size, none.dt, &pair, &wild)) continue;
+                    if (!gxp_meets_any(body, surface, at, body->touch.facing + 3 * (size_t)f, none.dt, &pair, &wild))
+                        continue;
                     CHECK_SEED(parts > 1, seed);
                     for (i = 0; i < body->touch.found; i++)
                         if (body->touch.pairs[i].sample == pair.sample && body->touch.pairs[i].collider == c &&
@@ -362,8 +360,8 @@ START_TEST(colliders_are_found) {
         for (f = 0; f < surface->vertex_count; f++) {
             gxp_touch_pair pair = gxp_no_pair(f);
             pair.collider = c;
-            if (!(layers[f] > 0) || !gxp_meets_collider(body, body->touch.moved + 9 * (size_t)f,
-                                                        surface->vertices[f].size, none.dt, &pair, &wild))
+            if (!(layers[f] > 0) || !gxp_meets_any(body, surface, body->touch.moved + 9 * (size_t)f,
+                                                   body->touch.moved + 9 * (size_t)f + 6, none.dt, &pair, &wild))
                 continue;
             for (i = 0; i < body->touch.found; i++)
                 if (body->touch.pairs[i].sample == f && body->touch.pairs[i].collider == c) break;
