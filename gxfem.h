@@ -251,9 +251,10 @@ typedef struct gx_body_desc {
     size_t material_count;
     const uint32_t *element_materials; /* element_count, below material_count; NULL: all of materials[0] */
     const float *texture;              /* node_count x 2: texture coordinates of the outer surface; NULL: all 0 */
-    /* A share of an element, below 1. A copy follows others if all parts of elements around it are smaller (see
-       gx_body_step). 0: 1e-3, and for affine copies 6e-2 of the largest part near them; then fragments that reach less
-       than a quarter as far as their elements move as points. 1e-300: none follow, and slivers may be flung away. */
+    /* Leave 0. A share of an element, below 1: a copy follows others if all parts of elements around it are smaller
+       (see gx_body_step). 0 stands for 1e-3, and for affine copies for 6e-2 of the largest part near them; with 0,
+       fragments that reach less than a quarter as far as their elements move as points. 1e-300: none follow, and
+       slivers may be flung away. */
     double support_below;
     /* In thicknesses of elements, 0 ... 1000. Where material is thinner, its copies carry an affine motion each (are
        affine), so that sheets bend as they should. Creation and cuts find it, the latter among what they touch; an
@@ -292,7 +293,7 @@ typedef struct gx_cut_desc {
     /* 0 ... 1: links of touched cells with a smaller share of their face are severed; 0: none. Links of cells that have
        an interface in their element are not */
     double sever_below;
-    /* release_count x 2: pairs of materials, the second or both GX_ANY_MATERIAL: what adjoins there comes apart,
+    /* release_count x 2: pairs of materials; the second, or both, may be GX_ANY_MATERIAL: what adjoins comes apart,
        within the cut's scope, where both sides are in it. It does so after the surfaces have given materials. With
        pairs, a cut may have no surfaces */
     const uint32_t *release;
@@ -377,7 +378,8 @@ typedef struct gx_view {
     const double *fragment_center; /* fragment_count x 3, centre of mass, material coordinates, m */
     /* fragment_count x 6, about the centre, material coordinates: 00 01 02 11 12 22, kg m2 */
     const double *fragment_inertia;
-    const uint32_t *fragment_id;     /* fragment_count: 1, 2 ...; never used again for another fragment */
+    const uint32_t *fragment_id;     /* fragment_count: 1, 2 ...; not used again for another fragment, but see
+                                        gx_body_restore */
     const uint32_t *fragment_origin; /* fragment_count: id of the fragment that it was part of before the change */
     const uint32_t *fragment_change; /* fragment_count: GX_FRAGMENT_ */
     size_t removed_count;
@@ -471,7 +473,8 @@ GXFEM_API gx_region gx_region_half_space(uint32_t axis, int side, double value);
 GXFEM_API gx_region gx_region_box(const double low[3], const double high[3]);
 GXFEM_API gx_region gx_region_sphere(const double center[3], double radius);
 /* Holds copies at their present displacement (Dirichlet), now and after later cuts: those whose node is in a region and
-   whose own cells have material there. Those of anchors: the copies that move them. gx_step_desc.region_poses moves
+   whose own cells have material there. Those of anchors: the copies that move them, at the
+   corners of their elements. gx_step_desc.region_poses moves
    what a region holds. Arrays are copied. Replaces the regions held before; region_count 0 releases all. On an error
    the earlier regions stay held.
    Errors: ARGUMENT, NOT_FINITE, RANGE, INDEX, NOT_CLOSED, EMPTY (a region holds no copy; later cuts may leave it none),
@@ -869,7 +872,8 @@ GXFEM_API gx_result gx_blade_contacts(gx_blade *blade, gx_blade_contact *contact
                                       gx_failure *failure /* or NULL */);
 
 /* Removes the material that a closed tool in space covers now (a drill, a punch), from each piece where it meets the
-   tool. tool: vertices in space, m; kind and scope_slots are not read. Its triangles are divided where elements
+   tool. tool: vertices in space, m; its triangles are oriented alike, either way; kind and scope_slots are not read.
+   Volumes of the report are of material at rest. Its triangles are divided where elements
    are smaller.
    Errors: as gx_body_cut; a field of the tool reads "tool.vertices"; NOT_FINITE and RANGE also of "displacement"
    (index: as for moves of blades). */
@@ -880,7 +884,8 @@ GXFEM_API gx_result gx_body_carve(gx_body *body, const gx_surface *tool, gx_cut_
 
 /* Hash of the cells and copies, the same on every compiler. 0 after an error: ARGUMENT, MEMORY, LIMIT. */
 GXFEM_API uint64_t gx_body_topology_hash(gx_body *body, gx_failure *failure /* or NULL */);
-/* Hash of all that a failed call must leave as it was, and of the fragments' ids */
+/* Hash of all that a failed call must leave as it was, and of the fragments' ids, which gx_body_view gives after a cut:
+   call it on both bodies before you compare them */
 GXFEM_API uint64_t gx_body_state_hash(const gx_body *body);
 /* The cause in words. With a gx_failure:
    fprintf(stderr, "%s: %s\n", failure.field ? failure.field : "the call", gx_result_text(failure.result));
@@ -890,10 +895,10 @@ GXFEM_API const char *gx_result_text(gx_result result);
 /* >>saving --------------------------------------------------------------------------------------------------------- */
 
 /* A body as bytes or as another body, with all that it is: mesh, materials, cuts, displacement, velocity, rest times,
-   the history of BDF2, held regions, contact, ids of fragments and their changes. Further cuts give the same cells, and
-   further steps the same bits in the same program. For that, saving, cloning and restoring make the solvers of all
-   bodies concerned start anew: the next step makes its preconditioner and takes no guess from the last. Sleeping copies
-   go on sleeping. Pointers are not saved. */
+   the history of BDF2, held regions, contact, blades, ids of fragments and their changes. Further cuts give the same
+   cells, and further steps the same bits in the same program. For that, saving, cloning and restoring make the solvers
+   of all bodies concerned start anew: the next step makes its preconditioner and takes no guess from the last. Sleeping
+   copies go on sleeping. Pointers are not saved. */
 
 /* Writes the body to memory, which has room for capacity bytes. *size: receives how many bytes it takes, also after
    CAPACITY. memory NULL: computes *size only. Fields have fixed widths, in the machine's byte order, which the bytes
@@ -912,7 +917,9 @@ GXFEM_API gx_result gx_body_load(const void *memory, size_t size, const gx_body_
 GXFEM_API gx_result gx_body_clone(gx_body *body, gx_body **clone, gx_failure *failure /* or NULL */);
 /* The body becomes what `from` is: to go back to a clone, or to bring a clone up to date. If both have been cut alike,
    only the state is copied, and neither cells nor the solver's model are made anew. Otherwise the arrays of views and
-   skins become invalid, as by a cut. Allocator, clock and jobs stay the body's own. On an error the body is as it was.
+   skins become invalid, as by a cut. Allocator, clock and jobs stay the body's own, and what it has told by
+   gx_body_contact_events: what touched then, and does not now, has ended. Fragments have the ids that they had. Ids
+   given since are given again, to others. On an error the body is as it was.
    Errors: ARGUMENT, MEMORY, LIMIT, CONFIGURATION. */
 GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *failure /* or NULL */);
 
@@ -20859,11 +20866,14 @@ static gx_result gxp_restore_all(gx_body *body, gx_body *from) {
 }
 
 GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *failure) {
+    gxp_words told;
     uint32_t made;
     gx_result result;
     if (body == NULL) return gxp_refuse(failure, "body");
     if (from == NULL) return gxp_refuse(failure, "from");
     if (body == from) return gxp_end(failure, GX_OK);
+    told = body->touch.touching; /* the caller does not go back */
+    memset(&body->touch.touching, 0, sizeof told);
     result = gxp_prepare_blades(body, from, &made);
     if (result == GX_OK)
         result = body->cuts.hash == from->cuts.hash && body->copies.count == from->copies.count &&
@@ -20875,6 +20885,8 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
         gxp_take_blades(body, from);
     else
         gxp_drop_blades(body, made);
+    gxp_release(&body->config.allocator, body->touch.touching.data, body->touch.touching.capacity * sizeof(uint32_t));
+    body->touch.touching = told;
     return gxp_end(failure, result);
 }
 

@@ -385,6 +385,42 @@ END_TEST
 /* Along each axis, and askew. At rest the hole is the prism, to the last digits; through a body that swings it goes
  * too.
  */
+START_TEST(remove_a_piece) {
+    static const double low[3] = {0, 0, 0}, high[3] = {1, 1, 1};
+    gx_body *body = make_body(5, NULL);
+    const double x[9] = {-1, -1, 0.13, 3, -1, 0.13, -1, 3, 0.13};
+    static const uint32_t triangle[3] = {0, 1, 2};
+    gx_surface sheet;
+    gx_cut_desc cut;
+    gx_view view;
+    uint32_t ids[2], small;
+    double volume;
+    memset(&sheet, 0, sizeof sheet);
+    sheet.vertices = x;
+    sheet.vertex_count = 3;
+    sheet.triangles = triangle;
+    sheet.triangle_count = 1;
+    memset(&cut, 0, sizeof cut);
+    cut.surfaces = &sheet;
+    cut.surface_count = 1;
+    OK(gx_body_cut(body, &cut, NULL, NULL));
+    OK(gx_body_view(body, &view, NULL));
+    ck_assert_uint_eq(view.fragment_count, 2);
+    small = view.fragment_volume[1] < view.fragment_volume[0];
+    volume = view.fragment_volume[1 - small];
+    ids[0] = view.fragment_id[small];
+    ids[1] = view.fragment_id[1 - small];
+    OK(remove_piece(body, small, low, high));
+    OK(gx_body_view(body, &view, NULL));
+    ck_assert_uint_eq(view.fragment_count, 1);
+    ck_assert_uint_eq(view.fragment_id[0], ids[1]);
+    ck_assert_uint_eq(view.removed_count, 1);
+    ck_assert_uint_eq(view.removed_ids[0], ids[0]);
+    ck_assert(fabs(view.volume - volume) <= 1e-12 * volume);
+    gx_body_destroy(body);
+}
+END_TEST
+
 START_TEST(drill_a_hole) {
     static const double axes[4][3] = {{0, 0, -1}, {0, 1, 0}, {-1, 0, 0}, {0.48, -0.6, 0.64}};
     const double *axis = axes[_i], radius = 0.1, middle[3] = {0.52, 0.47, 0.51},
@@ -872,6 +908,7 @@ int main(void) {
     tcase_add_test(tc, drag);
     tcase_add_loop_test(tc, blade_in_space, 0, 2);
     tcase_add_test(tc, blade_begins_outside);
+    tcase_add_test(tc, remove_a_piece);
     tcase_add_loop_test(tc, drill_a_hole, 0, 4);
     tcase_add_test(tc, feel_the_blade);
     tcase_add_test(tc, hold);

@@ -1154,6 +1154,14 @@ START_TEST(events_are_told) {
     ck_assert_int_eq(gx_body_contact_events(clone, again, 8, &more, &failure), GX_OK);
     ck_assert_uint_eq(events[0].change, GX_CONTACT_PERSISTS);
     ck_assert(count == 1 && more == 1 && memcmp(events, again, sizeof *events) == 0);
+    move_pieces(clone, 1, apart, still); /* a body that becomes another one has told what it has told */
+    take(clone, &step);
+    ck_assert_int_eq(gx_body_contact_events(clone, again, 8, &more, &failure), GX_OK);
+    ck_assert(more == 1 && again[0].change == GX_CONTACT_ENDED);
+    ck_assert_int_eq(gx_body_restore(clone, body, &failure), GX_OK);
+    take(clone, &step);
+    ck_assert_int_eq(gx_body_contact_events(clone, again, 8, &more, &failure), GX_OK);
+    ck_assert(more == 1 && again[0].change == GX_CONTACT_BEGAN);
     gx_body_destroy(clone);
     move_pieces(body, 1, apart, still);
     take(body, &step);
