@@ -166,12 +166,13 @@ $(BUILD)/web/player.css $(BUILD)/web/player.js: $(BUILD)/web/%: examples/%
 	@$(bare) $< >$@
 
 # From clang 16 on vectors are right (gxfem_boolean.h): a step then takes two thirds of the time. Sizes and times are those of
-# instructions that all browsers have had since 2021, and of an instruction in place of a call for a square root.
+# instructions that all browsers have had since 2021, of an instruction in place of a call for a square root, and of indices without
+# padding.
 newest_clang = $(shell for c in clang-21 clang-20 clang-19 clang-18 clang-17 clang-16 clang; do command -v $$c >/dev/null && echo $$c && break; done)
 web_target = $(or $(CLANG),$(newest_clang)) --target=wasm32-wasi --sysroot=$(or $(SYSROOT),/usr)
 web_clang = $(web_target) -std=c99 -Os $(WARNINGS) -I. \
     -fno-math-errno -mbulk-memory -mnontrapping-fptoint -msign-ext
-web_link = -mexec-model=reactor -Wl,-z,stack-size=65536 -Wl,--stack-first -Wl,--strip-all -lm
+web_link = -mexec-model=reactor -Wl,-z,stack-size=65536 -Wl,--stack-first -Wl,--strip-all,--compress-relocations -lm
 # Linked by a command of its own: with -Os there, clang would run Binaryen's wasm-opt where it is installed, which makes steps slower.
 $(BUILD)/web/jelly.wasm: web_vectors =
 $(BUILD)/web/jelly-simd.wasm: web_vectors = -msimd128
