@@ -1280,7 +1280,6 @@ typedef struct gxp_skin_vertex { /* beside the columns that users see */
     uint32_t corner;   /* 3 x triangle + k: its first corner */
     uint8_t outer;     /* 1: of the outer surface */
     uint8_t placed;    /* 1: new in its place since the last update */
-    uint8_t noted;     /* 1: in changed[0] */
 } gxp_skin_vertex;
 
 typedef struct gxp_skin_links {
@@ -1313,14 +1312,16 @@ typedef struct gxp_skin {
     gxp_skin_slot *slots;
     uint32_t slot_count, slot_capacity, free_slot;
     gxp_words vertex_buckets, slot_buckets;
+    uint32_t bucket_mask;  /* the least 2^k - 1 that is no less than the last vertex bucket */
     gxp_words boundary;    /* face_count: number among the outer faces */
     gxp_words groups;      /* outer faces x 4: group of each node's corner */
     double *group_normals; /* x 3, by group */
     uint32_t group_normal_capacity;
-    gxp_words changed[2]; /* vertices, triangles */
+    gxp_words changed[2]; /* sets of vertices and of triangles; empty between calls */
     gx_range *ranges[2];
     uint32_t range_count[2], range_capacity[2];
     /* of a call */
+    gxp_words gaps;                           /* triangles that went and whose places no other has taken */
     gxp_words outer_faces;                    /* element * 4 + k of each */
     gxp_words edge_faces;                     /* mesh edges, twice: the first and the second outer face there */
     gxp_words corner_points, corner_vertices; /* of a facet that is divided into triangles */
@@ -1980,7 +1981,7 @@ static const gxp_column gxp_lists[] = {
     GXP_LIST(attached.weights, attached.weight_capacity, sizeof(double)),
     GXP_LIST(attached.forces, attached.force_capacity, 3 * sizeof(double)),
     GXP_LIST(attached.targets, attached.target_capacity, 3 * sizeof(double)),
-    GXP_WORDS(skin.dirty), GXP_WORDS(skin.first), GXP_LIST(skin.slots, skin.slot_capacity, sizeof(gxp_skin_slot)),
+    GXP_WORDS(skin.gaps), GXP_WORDS(skin.dirty), GXP_WORDS(skin.first), GXP_LIST(skin.slots, skin.slot_capacity, sizeof(gxp_skin_slot)),
     GXP_WORDS(skin.vertex_buckets), GXP_WORDS(skin.slot_buckets), GXP_WORDS(skin.boundary), GXP_WORDS(skin.groups),
     GXP_LIST(skin.group_normals, skin.group_normal_capacity, 3 * sizeof(double)),
     GXP_WORDS(skin.changed[0]), GXP_LIST(skin.ranges[0], skin.range_capacity[0], sizeof(gx_range)),
@@ -2112,6 +2113,17 @@ static gx_result gxp_push(gx_body *body, gxp_words *words, uint32_t value) {
     return result;
 }
 
+/* At least count words, which keep what they have; new ones are 0. */
+static gx_result gxp_extend_words(gx_body *body, gxp_words *words, uint32_t count) {
+    gx_result result;
+    if (count <= words->count) return GX_OK;
+    result = gxp_words_room(body, words, count - words->count);
+    if (result != GX_OK) return result;
+    memset(words->data + words->count, 0, (count - words->count) * sizeof *words->data);
+    words->count = count;
+    return GX_OK;
+}
+
 /* Empty, with room for count words */
 static gx_result gxp_start_words(gx_body *body, gxp_words *words, size_t count) {
     words->count = 0;
@@ -2124,6 +2136,27 @@ static gx_result gxp_start_words(gx_body *body, gxp_words *words, size_t count) 
 #define GXP_LINK_CELL(link)  ((uint32_t)((link) >> 33))
 #define GXP_LINK_FACET(link) ((uint32_t)((link) >> 2) & 0x7fffffffu)
 #define GXP_LINK_FACE(link)  ((uint32_t)(link)&3)
+
+/* --- sets of numbers: 32 bits a word --- */
+
+static inline gx_result gxp_include(gx_body *body, gxp_words *set, uint32_t number) {
+    const gx_result result = number / 32 < set->count ? GX_OK : gxp_extend_words(body, set, number / 32 + 1);
+    if (result == GX_OK) set->data[number / 32] |= 1u << (number & 31);
+    return result;
+}
+
+static inline void gxp_exclude(gxp_words *set, uint32_t number) { set->data[number / 32] &= ~(1u << (number & 31)); }
+
+/* The least number of a set that is not below `from`, GXP_NONE: there is none */
+static uint32_t gxp_next_of_set(const gxp_words *set, uint32_t from) {
+    uint32_t word = from / 32, bits;
+    if (word >= set->count) return GXP_NONE;
+    bits = set->data[word] >> (from & 31);
+    for (; bits == 0; from = 32 * word, bits = set->data[word])
+        if (++word == set->count) return GXP_NONE;
+    for (; !(bits & 1); bits >>= 1) from++;
+    return from;
+}
 
 static gx_result gxp_keys_room(gx_body *body, gxp_keys *keys, size_t extra) {
     return gxp_reserve(&body->config.allocator, &keys->data, sizeof *keys->data, keys->count, &keys->capacity, extra);
@@ -6149,11 +6182,17 @@ static gx_result gxp_find_specks(gxp_cut *cut, const gxp_not_meant *least, uint3
 /* In: a cut that has been made. Out: once it is committed, the same body after gxb_complex_compact. All memory is taken
    before; without it the cut fails. Touches rows of leaves and cells, indices of planes, maps. */
 
-static uint32_t *gxp_vertex_bucket(gxp_skin *s, const gxp_skin_key *key) {
+static uint32_t gxp_hash_key(const gxp_skin_key *key) {
     uint64_t h = gxp_mix((uint64_t)key->group[0] << 32 | key->group[1]) + key->point;
     h = gxp_mix(h ^ ((uint64_t)key->name[0] << 32 | key->name[1]));
-    h = gxp_mix(h ^ ((uint64_t)key->name[2] << 32 | key->name[3]));
-    return &s->vertex_buckets.data[h & (s->vertex_buckets.count - 1)];
+    return (uint32_t)gxp_mix(h ^ ((uint64_t)key->name[2] << 32 | key->name[3]));
+}
+
+/* The bucket of a vertex by the hash of its key. Buckets are divided one by one as vertices come, so that no cut pays
+   for all of them [linear hashing, Litwin 1980]. */
+static uint32_t *gxp_vertex_bucket(gxp_skin *s, uint32_t hash) {
+    const uint32_t bucket = hash & s->bucket_mask;
+    return &s->vertex_buckets.data[bucket < s->vertex_buckets.count ? bucket : bucket & s->bucket_mask >> 1];
 }
 
 /* Rows of leaves that went go, others get their new places. Of those of a cell that became one, the first stays. */
@@ -6195,7 +6234,7 @@ static void gxp_settle_skin(gx_body *body, const gxb_renumbering *r) {
             const uint32_t plane = r->planes[(key->group[1] - GXP_PLANE_GROUP) >> 1], side = key->group[1] & 1;
             key->group[1] = plane == GXB_NONE ? GXP_NONE : GXP_PLANE_GROUP + 2 * plane + side;
         }
-        bucket = gxp_vertex_bucket(s, key);
+        bucket = gxp_vertex_bucket(s, gxp_hash_key(key));
         s->vertices[i].next = *bucket;
         *bucket = i;
     }
@@ -9752,20 +9791,32 @@ typedef struct gxp_skin_face {
     double normal[3];  /* outward at rest, of any length */
 } gxp_skin_face;
 
-/* Room for one more vertex; the buckets grow with the vertices. */
-static gx_result gxp_vertex_room(gx_body *body) {
+/* One more bucket, which takes its vertices from another one */
+static gx_result gxp_add_bucket(gx_body *body) {
     gxp_skin *s = &body->skin;
-    const uint32_t before = s->vertex_capacity[0];
-    uint32_t i;
-    gx_result result = gxp_grow_rows(body, GXP_SKIN_VERTICES, 1);
-    if (result != GX_OK || (s->vertex_capacity[0] == before && s->vertex_buckets.count > 0)) return result;
-    result = gxp_rehash(body, &s->vertex_buckets, s->vertex_capacity[0]);
-    for (i = 0; i < s->vertex_count && result == GX_OK; i++) {
-        uint32_t *bucket = gxp_vertex_bucket(s, &s->vertices[i].key);
-        s->vertices[i].next = *bucket;
-        *bucket = i;
+    const uint32_t bucket = s->vertex_buckets.count;
+    uint32_t *link, i, next;
+    const gx_result result = gxp_push(body, &s->vertex_buckets, GXP_NONE);
+    if (result != GX_OK || bucket == 0) return result;
+    if (bucket > s->bucket_mask) s->bucket_mask = 2 * s->bucket_mask + 1;
+    link = &s->vertex_buckets.data[bucket & s->bucket_mask >> 1];
+    for (i = *link; i != GXP_NONE; i = next) {
+        next = s->vertices[i].next;
+        if ((gxp_hash_key(&s->vertices[i].key) & s->bucket_mask) != bucket) {
+            link = &s->vertices[i].next;
+            continue;
+        }
+        *link = next;
+        s->vertices[i].next = s->vertex_buckets.data[bucket];
+        s->vertex_buckets.data[bucket] = i;
     }
-    return result;
+    return GX_OK;
+}
+
+/* Room for one more vertex, and a bucket for each */
+static gx_result gxp_vertex_room(gx_body *body) {
+    const gx_result result = gxp_grow_rows(body, GXP_SKIN_VERTICES, 1);
+    return result == GX_OK && body->skin.vertex_buckets.count <= body->skin.vertex_count ? gxp_add_bucket(body) : result;
 }
 
 /* The key of a point of the face; it takes no arithmetic. */
@@ -9815,11 +9866,18 @@ static void gxp_set_texture(gx_body *body, uint32_t vertex, const gxp_skin_face 
     }
 }
 
+/* A key that is sought */
+typedef struct gxp_sought {
+    gxp_skin_key key;
+    uint32_t hash;
+} gxp_sought;
+
 /* Appends a vertex with this key at a point of the complex; there is room. */
-static gx_result gxp_add_vertex(gx_body *body, const gxp_skin_face *face, const gxp_skin_key *key, uint32_t point,
+static gx_result gxp_add_vertex(gx_body *body, const gxp_skin_face *face, const gxp_sought *sought, uint32_t point,
                                 uint32_t *vertex) {
     gxp_skin *s = &body->skin;
     const uint32_t i = s->vertex_count;
+    uint32_t *bucket = gxp_vertex_bucket(s, sought->hash);
     gxp_skin_vertex *v = &s->vertices[i];
     double *rest = s->rest + 3 * (size_t)i;
     const double *lambda;
@@ -9831,14 +9889,13 @@ static gx_result gxp_add_vertex(gx_body *body, const gxp_skin_face *face, const 
     lambda = body->scratch.boundary.lambdas + 4 * (size_t)slot;
     gxp_weigh_point(face, lambda, s->copies + 4 * (size_t)i, s->weights + 4 * (size_t)i, v->slots);
     for (n = 0; n < 4 && !face->outer; n++) v->slots[n] = own;
-    v->key = *key;
+    v->key = sought->key;
     v->corner = GXP_NONE;
     v->outer = face->outer;
     v->placed = 1;
-    v->noted = 0;
-    v->next = *gxp_vertex_bucket(s, key);
-    *gxp_vertex_bucket(s, key) = i;
-    s->point[i] = key->point;
+    v->next = *bucket;
+    *bucket = i;
+    s->point[i] = v->key.point;
     for (k = 0; k < 3; k++) {
         rest[k] = 0;
         for (n = 0; n < 4; n++)
@@ -9852,26 +9909,45 @@ static gx_result gxp_add_vertex(gx_body *body, const gxp_skin_face *face, const 
     return GX_OK;
 }
 
-/* Notes a vertex that may have changed. */
-static gx_result gxp_note_vertex(gx_body *body, uint32_t vertex) {
-    gxp_skin_vertex *v = &body->skin.vertices[vertex];
-    if (v->noted) return GX_OK;
-    v->noted = 1;
-    return gxp_push(body, &body->skin.changed[0], vertex);
+/* Finds or appends the vertex of a point, and notes it: it may have changed. */
+static gx_result gxp_find_vertex(gx_body *body, const gxp_skin_face *face, const gxp_sought *sought, uint32_t point,
+                                 uint32_t *vertex) {
+    const gxp_skin *s = &body->skin;
+    gx_result result;
+    for (*vertex = *gxp_vertex_bucket(&body->skin, sought->hash); *vertex != GXP_NONE;
+         *vertex = s->vertices[*vertex].next)
+        if (memcmp(&s->vertices[*vertex].key, &sought->key, sizeof sought->key) == 0)
+            return gxp_include(body, &body->skin.changed[0], *vertex);
+    result = gxp_vertex_room(body);
+    if (result == GX_OK) result = gxp_add_vertex(body, face, sought, point, vertex);
+    return result == GX_OK ? gxp_include(body, &body->skin.changed[0], *vertex) : result;
 }
 
-/* Finds or appends the vertex of a point. */
-static gx_result gxp_find_vertex(gx_body *body, const gxp_skin_face *face, uint32_t point, uint32_t *vertex) {
+#define GXP_SOUGHT 8u /* keys that are sought together */
+
+/* Finds or appends the vertices of points of a face. Memory is asked for what several keys need before the first of
+   them is compared. */
+static gx_result gxp_find_vertices(gx_body *body, const gxp_skin_face *face, const uint32_t *points, uint32_t count,
+                                   uint32_t *vertices) {
     gxp_skin *s = &body->skin;
-    gxp_skin_key key;
-    gx_result result;
-    gxp_make_key(body, face, point, &key);
-    *vertex = s->vertex_buckets.count > 0 ? *gxp_vertex_bucket(s, &key) : GXP_NONE;
-    for (; *vertex != GXP_NONE; *vertex = s->vertices[*vertex].next)
-        if (memcmp(&s->vertices[*vertex].key, &key, sizeof key) == 0) return gxp_note_vertex(body, *vertex);
-    result = gxp_vertex_room(body);
-    if (result == GX_OK) result = gxp_add_vertex(body, face, &key, point, vertex);
-    return result == GX_OK ? gxp_note_vertex(body, *vertex) : result;
+    gxp_sought sought[GXP_SOUGHT];
+    uint32_t i;
+    gx_result result = GX_OK;
+    for (; count > 0 && result == GX_OK; count -= i, points += i, vertices += i) {
+        const uint32_t n = count < GXP_SOUGHT ? count : GXP_SOUGHT;
+        for (i = 0; i < n; i++) {
+            gxp_make_key(body, face, points[i], &sought[i].key);
+            sought[i].hash = gxp_hash_key(&sought[i].key);
+            GXP_PREFETCH(gxp_vertex_bucket(s, sought[i].hash));
+        }
+        for (i = 0; i < n; i++) {
+            const uint32_t first = *gxp_vertex_bucket(s, sought[i].hash);
+            if (first != GXP_NONE) GXP_PREFETCH(&s->vertices[first]);
+        }
+        for (i = 0; i < n && result == GX_OK; i++)
+            result = gxp_find_vertex(body, face, &sought[i], points[i], &vertices[i]);
+    }
+    return result;
 }
 
 /* Removes a vertex without triangles. The last one takes its place. */
@@ -9880,18 +9956,18 @@ static gx_result gxp_drop_vertex(gx_body *body, uint32_t vertex) {
     const uint32_t last = --s->vertex_count;
     uint32_t *link, corner;
     gx_result result = GX_OK;
-    for (link = gxp_vertex_bucket(s, &s->vertices[vertex].key); *link != vertex; link = &s->vertices[*link].next) {}
+    for (link = gxp_vertex_bucket(s, gxp_hash_key(&s->vertices[vertex].key)); *link != vertex; link = &s->vertices[*link].next) {}
     *link = s->vertices[vertex].next;
     if (!s->vertices[vertex].outer) {
         s->slots[s->vertices[vertex].slots[0]].next = s->free_slot;
         s->free_slot = s->vertices[vertex].slots[0];
     }
     if (vertex == last) return GX_OK;
-    for (link = gxp_vertex_bucket(s, &s->vertices[last].key); *link != last; link = &s->vertices[*link].next) {}
+    for (link = gxp_vertex_bucket(s, gxp_hash_key(&s->vertices[last].key)); *link != last; link = &s->vertices[*link].next) {}
     *link = vertex;
     for (corner = s->vertices[last].corner; corner != GXP_NONE; corner = s->links[corner / 3].corner_next[corner % 3]) {
         s->triangles[corner] = vertex;
-        if (result == GX_OK) result = gxp_push(body, &s->changed[1], corner / 3);
+        if (result == GX_OK) result = gxp_include(body, &s->changed[1], corner / 3);
     }
     gxp_copy_row(body, GXP_SKIN_VERTICES, last, vertex);
     s->vertices[vertex].placed = 1;
@@ -9937,33 +10013,59 @@ static void gxp_unlink_triangle(gxp_skin *s, uint32_t t) {
         s->first.data[s->element[t]] = own->next;
 }
 
-/* Removes a triangle. The last one takes its place. */
+/* Removes a triangle. Its place is a gap. */
 static gx_result gxp_drop_triangle(gx_body *body, uint32_t t) {
     gxp_skin *s = &body->skin;
-    const uint32_t last = s->triangle_count - 1;
     uint32_t k;
-    gx_result result = gxp_push(body, &s->changed[1], t);
-    for (k = 0; k < 3 && result == GX_OK; k++) result = gxp_note_vertex(body, s->triangles[3 * t + k]);
+    gx_result result = gxp_push(body, &s->gaps, t);
+    if (result == GX_OK) result = gxp_include(body, &s->changed[1], t);
+    for (k = 0; k < 3 && result == GX_OK; k++) result = gxp_include(body, &s->changed[0], s->triangles[3 * t + k]);
     if (result != GX_OK) return result;
     gxp_unlink_triangle(s, t);
-    s->triangle_count--;
-    if (t == last) return GX_OK;
-    gxp_unlink_triangle(s, last);
-    gxp_copy_row(body, GXP_SKIN_TRIANGLES, last, t);
-    gxp_link_triangle(s, t);
+    s->element[t] = GXP_NONE;
     return GX_OK;
+}
+
+/* Puts the last triangles into the gaps that are left. */
+static void gxp_close_gaps(gx_body *body) {
+    gxp_skin *s = &body->skin;
+    while (s->gaps.count > 0) {
+        const uint32_t last = s->triangle_count - 1;
+        if (s->triangle_count > 0 && s->element[last] == GXP_NONE) {
+            s->triangle_count--;
+            continue;
+        }
+        s->gaps.count--;
+        if (s->gaps.data[s->gaps.count] >= s->triangle_count) continue;
+        gxp_unlink_triangle(s, last);
+        gxp_copy_row(body, GXP_SKIN_TRIANGLES, last, s->gaps.data[s->gaps.count]);
+        gxp_link_triangle(s, s->gaps.data[s->gaps.count]);
+        s->triangle_count--;
+    }
+}
+
+/* The place of a new triangle: a gap, or behind all others */
+static gx_result gxp_triangle_place(gx_body *body, uint32_t *t) {
+    gxp_skin *s = &body->skin;
+    gx_result result = GX_OK;
+    *t = s->triangle_count;
+    if (s->gaps.count > 0) {
+        *t = s->gaps.data[--s->gaps.count];
+        return GX_OK;
+    }
+    result = gxp_grow_rows(body, GXP_SKIN_TRIANGLES, 1);
+    if (result == GX_OK) result = gxp_include(body, &s->changed[1], *t);
+    if (result == GX_OK) s->triangle_count++;
+    return result;
 }
 
 static gx_result gxp_add_skin_triangle(gx_body *body, const gxp_skin_face *face, const uint32_t vertex[3], int inward) {
     gxp_skin *s = &body->skin;
-    const uint32_t t = s->triangle_count;
-    uint32_t k, j, *corner;
-    gx_result result = gxp_grow_rows(body, GXP_SKIN_TRIANGLES, 1);
-    if (result == GX_OK) result = gxp_push(body, &s->changed[1], t);
+    uint32_t t, k, j, *corner;
+    const gx_result result = gxp_triangle_place(body, &t);
     if (result != GX_OK) return result;
     corner = s->triangles + 3 * (size_t)t;
     for (k = 0; k < 3; k++) corner[k] = vertex[inward ? 2 - k : k];
-    s->triangle_count++;
     s->element[t] = face->element;
     s->cell[t] = face->cell;
     s->material[t] = body->cells.data[face->cell].material;
@@ -9994,15 +10096,14 @@ static gx_result gxp_add_skin_facet(gx_body *body, const gxp_skin_face *face, ui
     gxb_complex *cx = body->complex;
     gxp_words *points = &body->skin.corner_points, *vertices = &body->skin.corner_vertices;
     const int inward = gxb_complex_facet(cx, facet)->leaf[0] == leaf;
-    uint32_t *p, *v, e0, en, i, n, vertex = GXP_NONE;
+    uint32_t *p, *v, e0, en, i, n;
     gx_result result = gxb_facet_resolve_edges(cx, facet, &e0, &en);
-    points->count = vertices->count = 0;
-    for (i = 0; i < en && result == GX_OK; i++) {
-        const uint32_t point = gxb_complex_edge_start(cx, gxp_item(cx, e0 + i));
-        result = gxp_find_vertex(body, face, point, &vertex);
-        if (result == GX_OK) result = gxp_push(body, points, point);
-        if (result == GX_OK) result = gxp_push(body, vertices, vertex);
-    }
+    if (result == GX_OK) result = gxp_start_words(body, points, en);
+    if (result == GX_OK) result = gxp_start_words(body, vertices, en);
+    if (result != GX_OK) return result;
+    for (i = 0; i < en; i++) points->data[i] = gxb_complex_edge_start(cx, gxp_item(cx, e0 + i));
+    points->count = vertices->count = en;
+    result = gxp_find_vertices(body, face, points->data, en, vertices->data);
     p = points->data;
     v = vertices->data;
     for (n = points->count, i = 0; n >= 3 && result == GX_OK; n--) {
@@ -10105,15 +10206,15 @@ static gx_result gxp_skin_leaf(gx_body *body, uint32_t leaf, gxp_skin_face *face
 
 /* Adds the outer faces of an element that no cut has touched. */
 static gx_result gxp_skin_whole(gx_body *body, gxp_skin_face *face) {
-    uint32_t k, j, vertex[3];
+    const uint32_t *node = gxb_complex_element_nodes(body->complex, face->element);
+    uint32_t k, j, point[3], vertex[3];
     gx_result result = GX_OK;
     face->plane = 0;
     for (k = 0; k < 4 && result == GX_OK; k++) {
         if (gxp_neighbour(body, face->element, k) != GXP_NONE) continue;
         result = gxp_outer_face(body, k, face);
-        for (j = 0; j < 3 && result == GX_OK; j++)
-            result = gxp_find_vertex(
-                body, face, gxb_complex_element_nodes(body->complex, face->element)[gxp_outward[k][j]], &vertex[j]);
+        for (j = 0; j < 3; j++) point[j] = node[gxp_outward[k][j]];
+        if (result == GX_OK) result = gxp_find_vertices(body, face, point, 3, vertex);
         if (result == GX_OK) result = gxp_add_skin_triangle(body, face, vertex, 0);
     }
     return result;
@@ -10238,52 +10339,51 @@ static void gxp_rest_normal(const gxp_skin *s, uint32_t vertex, float *normal) {
     gxp_set_normal(normal, n);
 }
 
+/* Drops noted vertices without triangles. The last vertex takes the place of one that goes: it has triangles, since all
+   behind it have. */
 static gx_result gxp_drop_lonely_vertices(gx_body *body) {
     gxp_skin *s = &body->skin;
-    uint32_t i;
+    uint32_t i = s->vertex_count;
     gx_result result = GX_OK;
-    gxp_sort_unique(&s->changed[0]);
-    /* from the end, so that the last vertex, which takes the place of a dropped one, is not dropped itself */
-    for (i = s->changed[0].count; i-- > 0 && result == GX_OK;) {
-        const uint32_t vertex = s->changed[0].data[i];
-        if (s->vertices[vertex].corner == GXP_NONE) result = gxp_drop_vertex(body, vertex);
+    while (i-- > 0 && result == GX_OK) {
+        if (i / 32 >= s->changed[0].count || s->changed[0].data[i / 32] == 0)
+            i &= ~31u;
+        else if (s->vertices[i].corner == GXP_NONE)
+            result = gxp_drop_vertex(body, i);
     }
     return result;
 }
 
 /* Renews the normals of the noted vertices; skin.changed[0] keeps the vertices that differ from before. */
 static void gxp_renew_normals(gxp_skin *s) {
-    uint32_t i, n = 0;
-    for (i = 0; i < s->changed[0].count; i++) {
-        const uint32_t vertex = s->changed[0].data[i];
+    gxp_words *changed = &s->changed[0];
+    uint32_t i;
+    for (i = gxp_next_of_set(changed, 0); i < s->vertex_count; i = gxp_next_of_set(changed, i + 1)) {
         float normal[3];
-        if (vertex >= s->vertex_count) continue;
-        memcpy(normal, s->normal + 3 * (size_t)vertex, sizeof normal);
-        gxp_rest_normal(s, vertex, normal);
-        if (s->vertices[vertex].placed || memcmp(normal, s->normal + 3 * (size_t)vertex, sizeof normal) != 0)
-            s->changed[0].data[n++] = vertex;
-        memcpy(s->normal + 3 * (size_t)vertex, normal, sizeof normal);
-        s->vertices[vertex].placed = s->vertices[vertex].noted = 0;
+        memcpy(normal, s->normal + 3 * (size_t)i, sizeof normal);
+        gxp_rest_normal(s, i, normal);
+        if (!s->vertices[i].placed && memcmp(normal, s->normal + 3 * (size_t)i, sizeof normal) == 0)
+            gxp_exclude(changed, i);
+        memcpy(s->normal + 3 * (size_t)i, normal, sizeof normal);
+        s->vertices[i].placed = 0;
     }
-    s->changed[0].count = n;
 }
 
-/* Turns the list of changed items into ranges. */
+/* Turns the set of changed items into ranges. */
 static gx_result gxp_make_ranges(gx_body *body, int kind, uint32_t count) {
     gxp_skin *s = &body->skin;
     gxp_words *changed = &s->changed[kind];
     gx_result result = GX_OK;
     uint32_t i, n = 0;
-    gxp_sort_unique(changed);
-    for (i = 0; i < changed->count && changed->data[i] < count && result == GX_OK; i++) {
-        if (n > 0 && s->ranges[kind][n - 1].first + s->ranges[kind][n - 1].count == changed->data[i]) {
+    for (i = gxp_next_of_set(changed, 0); i < count; i = gxp_next_of_set(changed, i + 1)) {
+        if (n > 0 && s->ranges[kind][n - 1].first + s->ranges[kind][n - 1].count == i) {
             s->ranges[kind][n - 1].count++;
             continue;
         }
         result =
             gxp_reserve(&body->config.allocator, &s->ranges[kind], sizeof **s->ranges, n, &s->range_capacity[kind], 1);
         if (result != GX_OK) break;
-        s->ranges[kind][n].first = changed->data[i];
+        s->ranges[kind][n].first = i;
         s->ranges[kind][n++].count = 1;
     }
     s->range_count[kind] = n;
@@ -10299,8 +10399,10 @@ static gx_result gxp_restart_skin(gx_body *body, const gx_skin_desc *desc) {
     s->desc = *desc;
     s->vertex_count = s->triangle_count = s->slot_count = 0;
     s->free_slot = GXP_NONE;
-    s->changed[0].count = s->changed[1].count = s->vertex_buckets.count = s->slot_buckets.count = 0;
-    result = gxp_group_corners(body);
+    s->changed[0].count = s->changed[1].count = s->gaps.count = s->vertex_buckets.count = s->slot_buckets.count = 0;
+    s->bucket_mask = 0;
+    result = gxp_add_bucket(body);
+    if (result == GX_OK) result = gxp_group_corners(body);
     if (result == GX_OK) result = gxp_start_words(body, &s->first, body->mesh.element_count);
     if (result == GX_OK) result = gxp_start_words(body, &s->dirty, body->mesh.element_count);
     if (result != GX_OK) return result;
@@ -10320,6 +10422,7 @@ static gx_result gxp_remake_elements(gx_body *body) {
     for (i = 0; i < s->dirty.count && result == GX_OK; i++) result = gxp_skin_element(body, s->dirty.data[i]);
     s->dirty.count = 0;
     if (result != GX_OK) return result;
+    gxp_close_gaps(body);
     result = gxp_drop_lonely_vertices(body);
     if (result == GX_OK) gxp_renew_normals(s);
     return result;
@@ -14999,17 +15102,6 @@ static void gxp_join_near(gx_blade *blade) {
     }
     for (i = 0; i < near->count; i++)
         for (k = 0; k < 4; k++) first[body->cells.data[near->cells[i].cell].copies[k]] = 0;
-}
-
-/* Words by cell or copy, which keep what they have; new ones are 0. */
-static gx_result gxp_extend_words(gx_body *body, gxp_words *words, uint32_t count) {
-    gx_result result;
-    if (count <= words->count) return GX_OK;
-    result = gxp_words_room(body, words, count - words->count);
-    if (result != GX_OK) return result;
-    memset(words->data + words->count, 0, (count - words->count) * sizeof *words->data);
-    words->count = count;
-    return GX_OK;
 }
 
 /* Numbers the layers in the order of their first cells. */
