@@ -10440,11 +10440,25 @@ static gx_result gxp_mark_fragments(gx_body *body) {
     return result;
 }
 
+/* Lets one column grow, of vertices or triangles, that has less than a share of its rows left: so no call pays for all
+   columns. */
+static gx_result gxp_grow_skin_ahead(gx_body *body, uint32_t share) {
+    uint32_t table, i;
+    for (table = GXP_SKIN_VERTICES; table <= GXP_SKIN_TRIANGLES; table++)
+        for (i = 0; i < gxp_tables[table].column_count; i++) {
+            const gxp_column *column = &gxp_tables[table].columns[i];
+            const size_t capacity = *gxp_capacity_at(body, column), count = gxp_count(body, table);
+            if (count + capacity / share > capacity) return gxp_grow_column(body, column, count, capacity + 1);
+        }
+    return GX_OK;
+}
+
 /* Brings the skin up to date. After an error it counts as unmade, so that the next call makes all of it. */
 static gx_result gxp_update_skin(gx_body *body, const gx_skin_desc *desc) {
     gxp_skin *s = &body->skin;
     const int all = !s->made || desc->crease_angle < s->desc.crease_angle ||
                     desc->crease_angle > s->desc.crease_angle || desc->smooth_cuts != s->desc.smooth_cuts;
+    const int idle = !all && s->dirty.count == 0;
     gx_result result;
     s->made = 0;
     s->range_count[0] = s->range_count[1] = 0;
@@ -10459,6 +10473,7 @@ static gx_result gxp_update_skin(gx_body *body, const gx_skin_desc *desc) {
     if (result == GX_OK)
         result = gxp_reserve(&body->config.allocator, &s->positions, 3 * sizeof(double), 0, &s->position_capacity,
                              s->vertex_count);
+    if (result == GX_OK) result = gxp_grow_skin_ahead(body, idle ? 4 : 8);
     if (result == GX_OK) s->made = 1;
     return result;
 }
@@ -16472,12 +16487,15 @@ static gx_result gxp_add_surface(gx_blade *blade, uint32_t layer, uint32_t old) 
 /* Shares. Beads are places within the first of an element's size of the layer. A bead is off its way by less than the
    second of the tolerance. Edge and copies move by less than the third of the mean size, in all. A bead comes less far
    than the fourth of the least advance that is cut, and of half the mean size; and no move is worked out because of
-   what waits before the edge has come as far as the last of these. */
+   what waits before the edge has come as far as the fifth of these. Of edge and copies that move by more than the last
+   one, in mean sizes, no move is left out: the next one would have to be worked out, most often with this one made up
+   for in the same frame. */
 #define GXP_BEAD_REACH   0.5
 #define GXP_BEAD_OFF     0.25
 #define GXP_GLANCE_ROOM  0.75
 #define GXP_BEAD_COURSE  1.0
 #define GXP_LEAST_GLANCE 0.125
+#define GXP_FIRST_GLANCE 0.25
 
 /* A bead goes through so many cells at most at a move. One that is off its cell by less than the second, in weights,
    stays there. */
@@ -16655,6 +16673,7 @@ static gx_result gxp_judge_move(gx_blade *blade, const double *edge, uint32_t co
     *motion = gxp_measure_motion(blade->body);
     way = glance->travelled + *motion + gxp_measure_edge(blade, edge, count);
     *verdict = way <= glance->room ? GXP_GLANCE_LITTLE : GXP_GLANCE_STRAIGHT;
+    if (glance->edge.count == 0 && way > GXP_FIRST_GLANCE * blade->step) *verdict = GXP_GLANCE_STRAIGHT;
     if (!(way <= 2 * blade->step)) *verdict = GXP_GLANCE_BENT;
     return gxp_follow_beads(blade, edge, count, verdict);
 }
