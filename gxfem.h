@@ -1415,16 +1415,18 @@ typedef struct gxp_blade_state { /* what lasts from move to move */
 
 typedef struct gxp_close_cell { /* a kept cell around the edge */
     uint32_t cell, layer;
-    uint32_t quad, unused;                 /* the first quad in whose box it is */
+    uint32_t quad;                         /* the first quad in whose box it is */
+    uint32_t old;                          /* the layer to which it belonged at the last move, or GXP_NONE */
     double corners[4][3], low[3], high[3]; /* deformed */
     double middle[3], radius;              /* of a ball around the corners */
-    double stretch;                        /* volume / volume at rest of its element; negative: inverted */
+    double stretch;                        /* once it was asked for: volume / volume at rest of its element; negative:
+                                              inverted */
     double size;                           /* of its element, m */
     uint32_t facets, facet_count;          /* of a divided element's cell, once they were asked for */
     double heights[4];                     /* of the corners over the faces opposite to them, likewise, m */
     uint8_t is_divided;                    /* its element is */
     uint8_t is_bent;                       /* its map is quadratic: corners alone do not tell it */
-    uint8_t has_facets, has_heights;
+    uint8_t has_facets, has_heights, has_stretch;
 } gxp_close_cell;
 typedef struct gxp_close_facet { /* a triangle that bounds a cell of a divided element */
     double corners[3][3];        /* deformed */
@@ -1478,15 +1480,16 @@ struct gx_blade {
     double step;                            /* m: the edge goes by no more at once */
     uint32_t max_samples;
     int starts_inside;
-    double slack;              /* m: how far cells may be outside of the tree's boxes now */
+    double slack, shift[3]; /* m: how far cells may be outside of the tree's boxes now, if these are moved by shift */
     gxp_blade_state now, then; /* then: what a step of a move makes */
     gxp_blade_state start;     /* what was now before the move, during the later steps of one */
     /* working memory of a move */
     gxp_vicinity near;
-    gxp_points quads;  /* 4 for each part of the strip that was swept */
-    gxp_plate *plates; /* of the quads, 2 each; of a layer: of its strips */
-    gxp_bounds *boxes; /* around each quad, wider by the largest element */
-    uint32_t plate_capacity, box_capacity;
+    gxp_points quads;   /* 4 for each part of the strip that was swept */
+    gxp_plate *plates;  /* of the quads, 2 each; of a layer: of its strips */
+    gxp_bounds *boxes;  /* around each quad, wider by the largest element */
+    gxp_bounds *sought; /* the same, moved back by shift */
+    uint32_t plate_capacity, box_capacity, sought_capacity;
     gxp_words found;          /* cells in a box */
     gxp_words in_scope;       /* by fragment: 1 if it is in the scope */
     gxp_words scope;          /* slots of each surface in turn */
@@ -9816,7 +9819,8 @@ static gx_result gxp_add_bucket(gx_body *body) {
 /* Room for one more vertex, and a bucket for each */
 static gx_result gxp_vertex_room(gx_body *body) {
     const gx_result result = gxp_grow_rows(body, GXP_SKIN_VERTICES, 1);
-    return result == GX_OK && body->skin.vertex_buckets.count <= body->skin.vertex_count ? gxp_add_bucket(body) : result;
+    return result == GX_OK && body->skin.vertex_buckets.count <= body->skin.vertex_count ? gxp_add_bucket(body)
+                                                                                         : result;
 }
 
 /* The key of a point of the face; it takes no arithmetic. */
@@ -9956,14 +9960,16 @@ static gx_result gxp_drop_vertex(gx_body *body, uint32_t vertex) {
     const uint32_t last = --s->vertex_count;
     uint32_t *link, corner;
     gx_result result = GX_OK;
-    for (link = gxp_vertex_bucket(s, gxp_hash_key(&s->vertices[vertex].key)); *link != vertex; link = &s->vertices[*link].next) {}
+    for (link = gxp_vertex_bucket(s, gxp_hash_key(&s->vertices[vertex].key)); *link != vertex;
+         link = &s->vertices[*link].next) {}
     *link = s->vertices[vertex].next;
     if (!s->vertices[vertex].outer) {
         s->slots[s->vertices[vertex].slots[0]].next = s->free_slot;
         s->free_slot = s->vertices[vertex].slots[0];
     }
     if (vertex == last) return GX_OK;
-    for (link = gxp_vertex_bucket(s, gxp_hash_key(&s->vertices[last].key)); *link != last; link = &s->vertices[*link].next) {}
+    for (link = gxp_vertex_bucket(s, gxp_hash_key(&s->vertices[last].key)); *link != last;
+         link = &s->vertices[*link].next) {}
     *link = vertex;
     for (corner = s->vertices[last].corner; corner != GXP_NONE; corner = s->links[corner / 3].corner_next[corner % 3]) {
         s->triangles[corner] = vertex;
@@ -10806,16 +10812,21 @@ static void gxp_fit_clusters(gx_body *body) {
     gxp_tree *tree = &body->tree;
     const uint32_t *marks = tree->marks.data + tree->cluster_count - 1;
     gxp_bounds *boxes = tree->boxes + tree->cluster_count - 1;
+    const int bends = body->copies.bends;
     uint32_t i, j;
-    int k;
     for (i = 0; i < tree->cluster_count; i++)
         if (marks[i] & GXP_BOX_MOVED) gxp_empty_bounds(&boxes[i]);
     tree->wild = 0;
     for (i = 0; i < body->copies.count; i++) {
         const uint32_t node = body->copies.node[i];
         gxp_bounds own;
-        gxp_reach_bounds(body, i, &own);
-        for (k = 0; k < 3; k++) tree->wild |= !gxp_is_near(own.low[k]) || !gxp_is_near(own.high[k]);
+        if (bends)
+            gxp_reach_bounds(body, i, &own);
+        else
+            gxp_copy_bounds(body, node, i, &own);
+        /* the sum is not near where one of its terms is not */
+        tree->wild |= !gxp_is_near(fabs(own.low[0]) + fabs(own.low[1]) + fabs(own.low[2]) + fabs(own.high[0]) +
+                                   fabs(own.high[1]) + fabs(own.high[2]));
         for (j = tree->node_first.data[node]; j < tree->node_first.data[node + 1]; j++)
             if (marks[tree->node_clusters.data[j]] & GXP_BOX_MOVED)
                 gxp_add_bounds(&boxes[tree->node_clusters.data[j]], &own);
@@ -10850,28 +10861,35 @@ static gx_result gxp_refit_tree(gx_body *body) {
     return GX_OK;
 }
 
-/* How far copies have moved since they were seen last: the largest coordinate, HUGE_VAL if one is not finite. Sums show
-   what is not finite, which comparisons may not. */
-static double gxp_drift(const gx_body *body) {
+/* By how much the way of each copy since it was seen last differs from *shift, the middle of all ways: the largest
+   coordinate, HUGE_VAL if one is not finite. Sums show what is not finite, which comparisons may not. */
+static double gxp_drift(const gx_body *body, double shift[3]) {
     const double *u = body->copies.displacement, *seen = body->copies.seen;
-    double most[3] = {0, 0, 0}, sum[3] = {0, 0, 0};
+    double least[3], most[3], sum[3] = {0, 0, 0}, drift = 0, way;
     uint32_t i;
     int k;
+    for (k = 0; k < 3; k++) least[k] = most[k] = body->copies.count > 0 ? u[k] - seen[k] : 0;
     for (i = 0; i < body->copies.count; i++, u += 3, seen += 3)
         for (k = 0; k < 3; k++) {
-            const double way = fabs(u[k] - seen[k]);
+            way = u[k] - seen[k];
+            least[k] = gxp_less(way, least[k]);
             most[k] = gxp_more(way, most[k]);
-            sum[k] += way;
+            sum[k] += fabs(way);
         }
-    return gxp_is_finite(sum[0] + sum[1] + sum[2]) ? gxp_more(most[0], gxp_more(most[1], most[2])) : HUGE_VAL;
+    for (k = 0; k < 3; k++) {
+        shift[k] = 0.5 * least[k] + 0.5 * most[k];
+        way = gxp_more(most[k] - shift[k], shift[k] - least[k]) + GXP_TREE_MARGIN * (most[k] - least[k]);
+        drift = gxp_more(way + GXP_TREE_MARGIN * fabs(shift[k]), drift); /* roundings when something is shifted */
+    }
+    return gxp_is_finite(sum[0] + sum[1] + sum[2]) ? drift : HUGE_VAL;
 }
 
-/* Brings the boxes up to date where copies have moved farther than `most`. *slack: cells are at most so far outside of
-   their boxes. One pass over the copies. Errors: MEMORY, LIMIT. */
-static gx_result gxp_refit_loosely(gx_body *body, double most, double *slack) {
-    *slack = body->tree.cluster_count > 0 ? gxp_drift(body) * (1 + GXP_TREE_MARGIN) : HUGE_VAL;
+/* Brings the boxes up to date where the body has changed by more than `most`. *slack: cells are at most so far outside
+   of their boxes, if these are moved by *shift. One pass over the copies. Errors: MEMORY, LIMIT. */
+static gx_result gxp_refit_loosely(gx_body *body, double most, double *slack, double shift[3]) {
+    *slack = body->tree.cluster_count > 0 ? gxp_drift(body, shift) : HUGE_VAL;
     if (*slack <= most && !body->copies.bends) return GX_OK; /* drift does not see what an A moves */
-    *slack = 0;
+    *slack = shift[0] = shift[1] = shift[2] = 0;
     return gxp_refit_tree(body);
 }
 
@@ -10979,8 +10997,8 @@ typedef struct gxp_boxes_walk {
     /* Called for each element whose box meets some of the boxes, within the slack: `count` of them, ascending. place:
        in mesh.box_elements. Elements come in an order that is always the same. */
     gx_result (*visit)(gx_body *body, struct gxp_boxes_walk *walk, uint32_t place, const uint32_t *met, uint32_t count);
-    const gxp_bounds *boxes;
-    double slack; /* as gxp_refit_loosely gave it */
+    const gxp_bounds *boxes; /* moved back by the shift that gxp_refit_loosely gave */
+    double slack;            /* as gxp_refit_loosely gave it */
 } gxp_boxes_walk;
 
 /* Appends to tree.met those of its last `count` boxes that meet a box of the tree. Returns their number; there is room.
@@ -11442,6 +11460,7 @@ typedef struct gxp_near {
 typedef struct gxp_near_walk {
     gxp_walk walk;
     const double *point;
+    double slack;                             /* cells are at most so far outside of their boxes */
     int (*admits)(void *user, uint32_t cell); /* NULL: all cells are admitted */
     void *user;
     gxp_near near;
@@ -11451,11 +11470,13 @@ typedef struct gxp_near_walk {
 #define GXP_NEAR_MARGIN 1e-12
 
 static double gxp_bound_distance(const gxp_walk *walk, const gxp_bounds *box) {
-    const double *x = ((const gxp_near_walk *)(const void *)walk)->point;
+    const gxp_near_walk *own = (const gxp_near_walk *)(const void *)walk;
+    const double *x = own->point;
     double square = 0;
     int k;
     for (k = 0; k < 3; k++) {
-        const double below = box->low[k] - x[k], above = x[k] - box->high[k], most = below > above ? below : above;
+        const double below = box->low[k] - x[k], above = x[k] - box->high[k],
+                     most = (below > above ? below : above) - own->slack;
         if (most > 0) square += most * most;
     }
     return square * (1 - GXP_NEAR_MARGIN);
@@ -11617,15 +11638,16 @@ static gx_result gxp_visit_near(gx_body *body, gxp_walk *walk, uint32_t element)
 }
 
 /* Finds the cell nearest to a point of space, among those for which admits(user, cell) is not 0 (NULL: all), of equally
-   near ones the first one. The point lies in none of them (gxp_find_cells_at). */
-static gx_result gxp_find_nearest(gx_body *body, const double point[3], int (*admits)(void *user, uint32_t cell),
-                                  void *user, gxp_near *near) {
+   near ones the first one. The point lies in none of them (gxp_find_cells_at). slack: of the tree's boxes */
+static gx_result gxp_find_nearest(gx_body *body, const double point[3], double slack,
+                                  int (*admits)(void *user, uint32_t cell), void *user, gxp_near *near) {
     gxp_near_walk own;
     gx_result result;
     own.walk.bound = gxp_bound_distance;
     own.walk.visit = gxp_visit_near;
     own.walk.limit = GXP_TREE_ALL;
     own.point = point;
+    own.slack = slack;
     own.admits = admits;
     own.user = user;
     memset(&own.near, 0, sizeof own.near);
@@ -11688,7 +11710,7 @@ static gx_result gxp_make_hit(gx_body *body, const double point[3], gx_hit *hit)
     if (body->tree.found.count > 0)
         gxp_hit_inside(body, body->tree.found.data[0], point, hit);
     else {
-        result = gxp_find_nearest(body, point, NULL, NULL, &near);
+        result = gxp_find_nearest(body, point, 0, NULL, NULL, &near);
         if (result == GX_OK) gxp_hit_near(body, &near, hit);
     }
     return result;
@@ -14976,6 +14998,9 @@ static gx_result gxp_prepare_quads(gx_blade *blade) {
     if (result == GX_OK)
         result = gxp_reserve(&blade->body->config.allocator, &blade->boxes, sizeof *blade->boxes, 0,
                              &blade->box_capacity, count);
+    if (result == GX_OK)
+        result = gxp_reserve(&blade->body->config.allocator, &blade->sought, sizeof *blade->sought, 0,
+                             &blade->sought_capacity, count);
     for (q = 0; q < count && result == GX_OK; q++) {
         const double *x = blade->quads.data + 12 * (size_t)q;
         gxp_set_plate(&blade->plates[2 * q], x, x + 3, x + 6);
@@ -14984,6 +15009,8 @@ static gx_result gxp_prepare_quads(gx_blade *blade) {
             const double of[4] = {x[k], x[3 + k], x[6 + k], x[9 + k]};
             blade->boxes[q].low[k] = gxp_least(of) - blade->largest;
             blade->boxes[q].high[k] = gxp_greatest(of) + blade->largest;
+            blade->sought[q].low[k] = blade->boxes[q].low[k] - blade->shift[k];
+            blade->sought[q].high[k] = blade->boxes[q].high[k] - blade->shift[k];
         }
     }
     return result;
@@ -15011,11 +15038,11 @@ static void gxp_near_weights(const gx_body *body, gxp_close_cell *c, const doubl
         gxp_tet_weights(c->corners, x, weights);
 }
 
-/* The deformed corners of a cell, and what contains them */
+/* The deformed corners of a cell, and the box around it */
 static void gxp_place_near(const gx_body *body, gxp_close_cell *c) {
     const gxp_cell *row = &body->cells.data[c->cell];
     double moved[12];
-    int n, k;
+    int k;
     gxp_moved_corners(body, row, moved);
     memcpy(c->corners, moved, sizeof moved);
     for (k = 0; k < 3; k++) {
@@ -15024,25 +15051,41 @@ static void gxp_place_near(const gx_body *body, gxp_close_cell *c) {
         c->high[k] = gxp_greatest(x);
         c->middle[k] = 0.25 * (x[0] + x[1] + x[2] + x[3]);
     }
-    c->radius = 0;
-    for (n = 0; n < 4; n++) c->radius = gxp_more(c->radius, gxp_square_distance(c->middle, c->corners[n]));
-    c->radius = sqrt(c->radius);
     c->is_bent = (uint8_t)gxp_is_bent(body, row);
-    if (c->is_bent) gxp_contain_bent(body, c);
-    c->is_divided = (uint8_t)(gxb_complex_root(body->complex, row->element) & 1);
-    c->has_facets = c->has_heights = 0;
     c->size = body->mesh.sizes[row->element];
+    c->radius = -1;
+    if (c->is_bent) gxp_contain_bent(body, c);
+}
+
+/* The radius of a ball around the corners of a cell, found when it is first asked for */
+static double gxp_near_radius(gxp_close_cell *c) {
+    double square = 0;
+    int n;
+    if (c->radius >= 0) return c->radius;
+    for (n = 0; n < 4; n++) square = gxp_more(square, gxp_square_distance(c->middle, c->corners[n]));
+    return c->radius = sqrt(square);
+}
+
+/* Is a cell within its element's size of a quad, in whose box it is? */
+static int gxp_is_near_quad(const gx_blade *blade, gxp_close_cell *c, uint32_t quad) {
+    const double reach = gxp_near_radius(c) + c->size;
+    return gxp_is_near_plate(&blade->plates[2 * quad], c->middle, reach) ||
+           gxp_is_near_plate(&blade->plates[2 * quad + 1], c->middle, reach);
 }
 
 /* Appends a cell to the near ones. */
-static gx_result gxp_push_near(gx_blade *blade, const gxp_close_cell *c) {
+static gx_result gxp_push_near(gx_blade *blade, gxp_close_cell *c) {
     gxp_vicinity *near = &blade->near;
+    const uint32_t element = blade->body->cells.data[c->cell].element;
     const gx_result result =
         gxp_reserve(&blade->body->config.allocator, &near->cells, sizeof *near->cells, near->count, &near->capacity, 1);
     if (result != GX_OK) return result;
     near->of_cell.data[c->cell] = near->count;
-    near->cells[near->count] = *c;
-    near->cells[near->count++].stretch = gxp_stretch(blade->body, c->cell);
+    (void)gxp_near_radius(c);
+    c->old = gxp_old_layer(blade, c->cell);
+    c->is_divided = (uint8_t)(gxb_complex_root(blade->body->complex, element) & 1);
+    c->has_facets = c->has_heights = c->has_stretch = 0;
+    near->cells[near->count++] = *c;
     return GX_OK;
 }
 
@@ -15073,9 +15116,7 @@ static gx_result gxp_add_near_cells(gx_body *body, gxp_boxes_walk *walk, uint32_
         for (i = 0, c.quad = GXP_NONE; i < count; i++) {
             if (gxp_gap(&blade->boxes[met[i]], &box) > 0) continue;
             if (c.quad == GXP_NONE) c.quad = met[i];
-            if (gxp_is_near_plate(&blade->plates[2 * met[i]], c.middle, c.radius + c.size) ||
-                gxp_is_near_plate(&blade->plates[2 * met[i] + 1], c.middle, c.radius + c.size))
-                break;
+            if (gxp_is_near_quad(blade, &c, met[i])) break;
         }
         if (i < count) result = gxp_push_near(blade, &c);
     }
@@ -15191,7 +15232,8 @@ static gx_result gxp_order_near(gx_blade *blade) {
 /* Brings the tree of boxes up to date for the blade. Blames a copy that is not finite or out of range. */
 static gx_result gxp_refit_near(gx_blade *blade, double most, gx_failure *failure) {
     uint32_t wild;
-    const gx_result result = gxp_refit_loosely(blade->body, most * blade->body->mesh.mean_size, &blade->slack);
+    const gx_result result =
+        gxp_refit_loosely(blade->body, most * blade->body->mesh.mean_size, &blade->slack, blade->shift);
     if (gxp_end(failure, result) != GX_OK) return result;
     wild = gxp_wild_copy(blade->body);
     return wild == GXP_NONE ? GX_OK : gxp_check_copy(blade->body, wild, failure);
@@ -15206,7 +15248,7 @@ static gx_result gxp_find_near(gx_blade *blade, const gxp_words *scope) {
     blade->near.count = blade->near.facet_count = 0;
     if (result != GX_OK) return result;
     own.walk.visit = gxp_add_near_cells;
-    own.walk.boxes = blade->boxes;
+    own.walk.boxes = blade->sought;
     own.walk.slack = blade->slack;
     own.blade = blade;
     own.scope = scope;
@@ -15348,14 +15390,23 @@ static void gxp_seek_triangle(uint32_t index, const double x[3], const double we
     memcpy(sight->weights, weights, sizeof sight->weights);
 }
 
+static double gxp_near_stretch(const gx_body *body, gxp_close_cell *c) {
+    if (!c->has_stretch) {
+        c->stretch = gxp_stretch(body, c->cell);
+        c->has_stretch = 1;
+    }
+    return c->stretch;
+}
+
 /* A cell that does not contain the place: is its material nearer than what was found before? The nearest point of its
    surface is on a wall, or on a face whose outer side the place is on. */
 static gx_result gxp_seek_outside(gx_blade *blade, uint32_t index, const double x[3], gxp_sight *sight) {
     gxp_close_cell *c = &blade->near.cells[index];
-    double weights[4], beyond[5];
+    double weights[4], beyond[5], stretch;
     uint32_t i;
     if (gxp_square_to_box(x, c->low, c->high) >= sight->square) return GX_OK;
-    if (c->stretch < GXP_FLAT_MAP || c->stretch > GXP_BLOWN_MAP) return GX_OK; /* inverted: outside is inside */
+    stretch = gxp_near_stretch(blade->body, c);
+    if (stretch < GXP_FLAT_MAP || stretch > GXP_BLOWN_MAP) return GX_OK; /* inverted: outside is inside */
     gxp_near_weights(blade->body, c, x, weights);
     if (!c->has_heights) gxp_measure_heights(c);
     beyond[4] = 0;
@@ -15383,11 +15434,12 @@ static gx_result gxp_seek_outside(gx_blade *blade, uint32_t index, const double 
 /* Does a cell contain the place? Then it is found. */
 static gx_result gxp_seek_inside(gx_blade *blade, uint32_t index, const double x[3], gxp_sight *sight) {
     gxp_close_cell *c = &blade->near.cells[index];
-    double weights[4];
+    double weights[4], stretch;
     int own = 0;
     gx_result result = GX_OK;
     if (gxp_square_to_box(x, c->low, c->high) > 0) return GX_OK;
-    if (fabs(c->stretch) < GXP_FLAT_MAP || fabs(c->stretch) > GXP_BLOWN_MAP) return GX_OK;
+    stretch = fabs(gxp_near_stretch(blade->body, c));
+    if (stretch < GXP_FLAT_MAP || stretch > GXP_BLOWN_MAP) return GX_OK;
     gxp_near_weights(blade->body, c, x, weights);
     if (weights[0] >= 0 && weights[1] >= 0 && weights[2] >= 0 && weights[3] >= 0)
         result = gxp_is_own_part(blade->body, c, weights, &own);
@@ -16447,7 +16499,7 @@ static gx_result gxp_list_scope(gx_blade *blade, uint32_t layer, uint32_t old) {
     }
     for (i = near->layer_start.data[layer]; i < near->layer_start.data[layer + 1] && result == GX_OK; i++) {
         const gxp_close_cell *c = &near->cells[GXP_SECOND(near->order.data[i])];
-        if (old != GXP_NONE && gxp_old_layer(blade, c->cell) != old) continue;
+        if (old != GXP_NONE && c->old != old) continue;
         if (gxp_is_in_reach(c, blade->plates, triangles))
             result = gxp_push(blade->body, &blade->scope, blade->body->cells.slot[c->cell]);
     }
@@ -16670,10 +16722,12 @@ static gx_result gxp_judge_move(gx_blade *blade, const double *edge, uint32_t co
     double way;
     *verdict = GXP_GLANCE_AWAY;
     if (!glance->ready || glance->cut != blade->body->cuts.hash) return GX_OK;
+    way = gxp_measure_edge(blade, edge, count);
+    if (glance->edge.count == 0 && !(way <= GXP_FIRST_GLANCE * blade->step)) return GX_OK;
     *motion = gxp_measure_motion(blade->body);
-    way = glance->travelled + *motion + gxp_measure_edge(blade, edge, count);
+    way += glance->travelled + *motion;
     *verdict = way <= glance->room ? GXP_GLANCE_LITTLE : GXP_GLANCE_STRAIGHT;
-    if (glance->edge.count == 0 && way > GXP_FIRST_GLANCE * blade->step) *verdict = GXP_GLANCE_STRAIGHT;
+    if (glance->edge.count == 0 && !(way <= GXP_FIRST_GLANCE * blade->step)) *verdict = GXP_GLANCE_STRAIGHT;
     if (!(way <= 2 * blade->step)) *verdict = GXP_GLANCE_BENT;
     return gxp_follow_beads(blade, edge, count, verdict);
 }
@@ -16806,7 +16860,7 @@ static gx_result gxp_find_owners(gx_blade *blade, uint32_t layer) {
     gx_result result = GX_OK;
     blade->owners.count = 0;
     for (i = near->layer_start.data[layer]; i < near->layer_start.data[layer + 1] && result == GX_OK; i++) {
-        const uint32_t old = gxp_old_layer(blade, near->cells[GXP_SECOND(near->order.data[i])].cell);
+        const uint32_t old = near->cells[GXP_SECOND(near->order.data[i])].old;
         if (old == GXP_NONE || old == last) continue;
         last = old;
         if (blade->now.layers.data[old].front_count == 0) continue;
@@ -17283,8 +17337,7 @@ static gx_result gxp_keep_far_place(gx_blade *blade, const double *edge, uint32_
         memcpy(v.position, x, sizeof x);
     }
     if (!(least < 64 * blade->largest * blade->largest)) return GX_OK;
-    result = gxp_refit_tree(body);
-    if (result == GX_OK) result = gxp_find_nearest(body, v.position, NULL, NULL, &near);
+    result = gxp_find_nearest(body, v.position, blade->slack + gxp_size(blade->shift), NULL, NULL, &near);
     if (result != GX_OK || near.cell == GXP_NONE) return result;
     v.element = body->cells.data[near.cell].element;
     v.size = blade->largest;
@@ -17952,6 +18005,7 @@ static void gxp_release_blade(gx_blade *b) {
     gxp_release_points(body, &b->quads);
     gxp_release(a, b->plates, b->plate_capacity * sizeof *b->plates);
     gxp_release(a, b->boxes, b->box_capacity * sizeof *b->boxes);
+    gxp_release(a, b->sought, b->sought_capacity * sizeof *b->sought);
     gxp_release_points(body, &b->corners);
     gxp_release_words(body, &b->owners);
     gxp_release_words(body, &b->heirs);
@@ -20786,6 +20840,7 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_SPECK
 #undef GXP_SPECK_REACH
 #undef GXP_PLANE_GROUP
+#undef GXP_SOUGHT
 #undef GXP_COLUMN
 #undef GXP_TABLE
 #undef GXP_LIST
@@ -20865,6 +20920,7 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_GLANCE_ROOM
 #undef GXP_BEAD_COURSE
 #undef GXP_LEAST_GLANCE
+#undef GXP_FIRST_GLANCE
 #undef GXP_BEAD_FACES
 #undef GXP_BEAD_TOUCH
 #undef GXP_NEAR_SLACK
