@@ -1290,7 +1290,6 @@ typedef struct gxp_skin_vertex { /* beside the columns that users see */
     uint32_t corner;   /* 3 x triangle + k: its first corner */
     uint8_t outer;     /* 1: of the outer surface */
     uint8_t placed;    /* 1: new in its place since the last update */
-    uint8_t noted;     /* 1: in changed[0] */
 } gxp_skin_vertex;
 
 typedef struct gxp_skin_links {
@@ -1323,14 +1322,16 @@ typedef struct gxp_skin {
     gxp_skin_slot *slots;
     uint32_t slot_count, slot_capacity, free_slot;
     gxp_words vertex_buckets, slot_buckets;
+    uint32_t bucket_mask;  /* the least 2^k - 1 that is no less than the last vertex bucket */
     gxp_words boundary;    /* face_count: number among the outer faces */
     gxp_words groups;      /* outer faces x 4: group of each node's corner */
     double *group_normals; /* x 3, by group */
     uint32_t group_normal_capacity;
-    gxp_words changed[2]; /* vertices, triangles */
+    gxp_words changed[2]; /* sets of vertices and of triangles; empty between calls */
     gx_range *ranges[2];
     uint32_t range_count[2], range_capacity[2];
     /* of a call */
+    gxp_words gaps;                           /* triangles that went and whose places no other has taken */
     gxp_words outer_faces;                    /* element * 4 + k of each */
     gxp_words edge_faces;                     /* mesh edges, twice: the first and the second outer face there */
     gxp_words corner_points, corner_vertices; /* of a facet that is divided into triangles */
@@ -1424,16 +1425,18 @@ typedef struct gxp_blade_state { /* what lasts from move to move */
 
 typedef struct gxp_close_cell { /* a kept cell around the edge */
     uint32_t cell, layer;
-    uint32_t quad, unused;                 /* the first quad in whose box it is */
+    uint32_t quad;                         /* the first quad in whose box it is */
+    uint32_t old;                          /* the layer to which it belonged at the last move, or GXP_NONE */
     double corners[4][3], low[3], high[3]; /* deformed */
     double middle[3], radius;              /* of a ball around the corners */
-    double stretch;                        /* volume / volume at rest of its element; negative: inverted */
+    double stretch;                        /* once it was asked for: volume / volume at rest of its element; negative:
+                                              inverted */
     double size;                           /* of its element, m */
     uint32_t facets, facet_count;          /* of a divided element's cell, once they were asked for */
     double heights[4];                     /* of the corners over the faces opposite to them, likewise, m */
     uint8_t is_divided;                    /* its element is */
     uint8_t is_bent;                       /* its map is quadratic: corners alone do not tell it */
-    uint8_t has_facets, has_heights;
+    uint8_t has_facets, has_heights, has_stretch;
 } gxp_close_cell;
 typedef struct gxp_close_facet { /* a triangle that bounds a cell of a divided element */
     double corners[3][3];        /* deformed */
@@ -1487,15 +1490,16 @@ struct gx_blade {
     double step;                            /* m: the edge goes by no more at once */
     uint32_t max_samples;
     int starts_inside;
-    double slack;              /* m: how far cells may be outside of the tree's boxes now */
+    double slack, shift[3]; /* m: how far cells may be outside of the tree's boxes now, if these are moved by shift */
     gxp_blade_state now, then; /* then: what a step of a move makes */
     gxp_blade_state start;     /* what was now before the move, during the later steps of one */
     /* working memory of a move */
     gxp_vicinity near;
-    gxp_points quads;  /* 4 for each part of the strip that was swept */
-    gxp_plate *plates; /* of the quads, 2 each; of a layer: of its strips */
-    gxp_bounds *boxes; /* around each quad, wider by the largest element */
-    uint32_t plate_capacity, box_capacity;
+    gxp_points quads;   /* 4 for each part of the strip that was swept */
+    gxp_plate *plates;  /* of the quads, 2 each; of a layer: of its strips */
+    gxp_bounds *boxes;  /* around each quad, wider by the largest element */
+    gxp_bounds *sought; /* the same, moved back by shift */
+    uint32_t plate_capacity, box_capacity, sought_capacity;
     gxp_words found;          /* cells in a box */
     gxp_words in_scope;       /* by fragment: 1 if it is in the scope */
     gxp_words scope;          /* slots of each surface in turn */
@@ -1996,6 +2000,7 @@ static const gxp_column gxp_lists[] = {
     GXP_LIST(attached.weights, attached.weight_capacity, sizeof(double)),
     GXP_LIST(attached.forces, attached.force_capacity, 3 * sizeof(double)),
     GXP_LIST(attached.targets, attached.target_capacity, 3 * sizeof(double)),
+    GXP_WORDS(skin.gaps),
     GXP_WORDS(skin.dirty), GXP_WORDS(skin.first), GXP_LIST(skin.slots, skin.slot_capacity, sizeof(gxp_skin_slot)),
     GXP_WORDS(skin.vertex_buckets), GXP_WORDS(skin.slot_buckets), GXP_WORDS(skin.boundary), GXP_WORDS(skin.groups),
     GXP_LIST(skin.group_normals, skin.group_normal_capacity, 3 * sizeof(double)),
@@ -2129,6 +2134,17 @@ static gx_result gxp_push(gx_body *body, gxp_words *words, uint32_t value) {
     return result;
 }
 
+/* At least count words, which keep what they have; new ones are 0. */
+static gx_result gxp_extend_words(gx_body *body, gxp_words *words, uint32_t count) {
+    gx_result result;
+    if (count <= words->count) return GX_OK;
+    result = gxp_words_room(body, words, count - words->count);
+    if (result != GX_OK) return result;
+    memset(words->data + words->count, 0, (count - words->count) * sizeof *words->data);
+    words->count = count;
+    return GX_OK;
+}
+
 /* Empty, with room for count words */
 static gx_result gxp_start_words(gx_body *body, gxp_words *words, size_t count) {
     words->count = 0;
@@ -2141,6 +2157,27 @@ static gx_result gxp_start_words(gx_body *body, gxp_words *words, size_t count) 
 #define GXP_LINK_CELL(link)  ((uint32_t)((link) >> 33))
 #define GXP_LINK_FACET(link) ((uint32_t)((link) >> 2) & 0x7fffffffu)
 #define GXP_LINK_FACE(link)  ((uint32_t)(link)&3)
+
+/* --- sets of numbers: 32 bits a word --- */
+
+static inline gx_result gxp_include(gx_body *body, gxp_words *set, uint32_t number) {
+    const gx_result result = number / 32 < set->count ? GX_OK : gxp_extend_words(body, set, number / 32 + 1);
+    if (result == GX_OK) set->data[number / 32] |= 1u << (number & 31);
+    return result;
+}
+
+static inline void gxp_exclude(gxp_words *set, uint32_t number) { set->data[number / 32] &= ~(1u << (number & 31)); }
+
+/* The least number of a set that is not below `from`, GXP_NONE: there is none */
+static uint32_t gxp_next_of_set(const gxp_words *set, uint32_t from) {
+    uint32_t word = from / 32, bits;
+    if (word >= set->count) return GXP_NONE;
+    bits = set->data[word] >> (from & 31);
+    for (; bits == 0; from = 32 * word, bits = set->data[word])
+        if (++word == set->count) return GXP_NONE;
+    for (; !(bits & 1); bits >>= 1) from++;
+    return from;
+}
 
 static gx_result gxp_keys_room(gx_body *body, gxp_keys *keys, size_t extra) {
     return gxp_reserve(&body->config.allocator, &keys->data, sizeof *keys->data, keys->count, &keys->capacity, extra);
@@ -6166,11 +6203,17 @@ static gx_result gxp_find_specks(gxp_cut *cut, const gxp_not_meant *least, uint3
 /* In: a cut that has been made. Out: once it is committed, the same body after gxb_complex_compact. All memory is taken
    before; without it the cut fails. Touches rows of leaves and cells, indices of planes, maps. */
 
-static uint32_t *gxp_vertex_bucket(gxp_skin *s, const gxp_skin_key *key) {
+static uint32_t gxp_hash_key(const gxp_skin_key *key) {
     uint64_t h = gxp_mix((uint64_t)key->group[0] << 32 | key->group[1]) + key->point;
     h = gxp_mix(h ^ ((uint64_t)key->name[0] << 32 | key->name[1]));
-    h = gxp_mix(h ^ ((uint64_t)key->name[2] << 32 | key->name[3]));
-    return &s->vertex_buckets.data[h & (s->vertex_buckets.count - 1)];
+    return (uint32_t)gxp_mix(h ^ ((uint64_t)key->name[2] << 32 | key->name[3]));
+}
+
+/* The bucket of a vertex by the hash of its key. Buckets are divided one by one as vertices come, so that no cut pays
+   for all of them [linear hashing, Litwin 1980]. */
+static uint32_t *gxp_vertex_bucket(gxp_skin *s, uint32_t hash) {
+    const uint32_t bucket = hash & s->bucket_mask;
+    return &s->vertex_buckets.data[bucket < s->vertex_buckets.count ? bucket : bucket & s->bucket_mask >> 1];
 }
 
 /* Rows of leaves that went go, others get their new places. Of those of a cell that became one, the first stays. */
@@ -6212,7 +6255,7 @@ static void gxp_settle_skin(gx_body *body, const gxb_renumbering *r) {
             const uint32_t plane = r->planes[(key->group[1] - GXP_PLANE_GROUP) >> 1], side = key->group[1] & 1;
             key->group[1] = plane == GXB_NONE ? GXP_NONE : GXP_PLANE_GROUP + 2 * plane + side;
         }
-        bucket = gxp_vertex_bucket(s, key);
+        bucket = gxp_vertex_bucket(s, gxp_hash_key(key));
         s->vertices[i].next = *bucket;
         *bucket = i;
     }
@@ -9772,20 +9815,33 @@ typedef struct gxp_skin_face {
     double normal[3];  /* outward at rest, of any length */
 } gxp_skin_face;
 
-/* Room for one more vertex; the buckets grow with the vertices. */
-static gx_result gxp_vertex_room(gx_body *body) {
+/* One more bucket, which takes its vertices from another one */
+static gx_result gxp_add_bucket(gx_body *body) {
     gxp_skin *s = &body->skin;
-    const uint32_t before = s->vertex_capacity[0];
-    uint32_t i;
-    gx_result result = gxp_grow_rows(body, GXP_SKIN_VERTICES, 1);
-    if (result != GX_OK || (s->vertex_capacity[0] == before && s->vertex_buckets.count > 0)) return result;
-    result = gxp_rehash(body, &s->vertex_buckets, s->vertex_capacity[0]);
-    for (i = 0; i < s->vertex_count && result == GX_OK; i++) {
-        uint32_t *bucket = gxp_vertex_bucket(s, &s->vertices[i].key);
-        s->vertices[i].next = *bucket;
-        *bucket = i;
+    const uint32_t bucket = s->vertex_buckets.count;
+    uint32_t *link, i, next;
+    const gx_result result = gxp_push(body, &s->vertex_buckets, GXP_NONE);
+    if (result != GX_OK || bucket == 0) return result;
+    if (bucket > s->bucket_mask) s->bucket_mask = 2 * s->bucket_mask + 1;
+    link = &s->vertex_buckets.data[bucket & s->bucket_mask >> 1];
+    for (i = *link; i != GXP_NONE; i = next) {
+        next = s->vertices[i].next;
+        if ((gxp_hash_key(&s->vertices[i].key) & s->bucket_mask) != bucket) {
+            link = &s->vertices[i].next;
+            continue;
+        }
+        *link = next;
+        s->vertices[i].next = s->vertex_buckets.data[bucket];
+        s->vertex_buckets.data[bucket] = i;
     }
-    return result;
+    return GX_OK;
+}
+
+/* Room for one more vertex, and a bucket for each */
+static gx_result gxp_vertex_room(gx_body *body) {
+    const gx_result result = gxp_grow_rows(body, GXP_SKIN_VERTICES, 1);
+    return result == GX_OK && body->skin.vertex_buckets.count <= body->skin.vertex_count ? gxp_add_bucket(body)
+                                                                                         : result;
 }
 
 /* The key of a point of the face; it takes no arithmetic. */
@@ -9835,11 +9891,18 @@ static void gxp_set_texture(gx_body *body, uint32_t vertex, const gxp_skin_face 
     }
 }
 
+/* A key that is sought */
+typedef struct gxp_sought {
+    gxp_skin_key key;
+    uint32_t hash;
+} gxp_sought;
+
 /* Appends a vertex with this key at a point of the complex; there is room. */
-static gx_result gxp_add_vertex(gx_body *body, const gxp_skin_face *face, const gxp_skin_key *key, uint32_t point,
+static gx_result gxp_add_vertex(gx_body *body, const gxp_skin_face *face, const gxp_sought *sought, uint32_t point,
                                 uint32_t *vertex) {
     gxp_skin *s = &body->skin;
     const uint32_t i = s->vertex_count;
+    uint32_t *bucket = gxp_vertex_bucket(s, sought->hash);
     gxp_skin_vertex *v = &s->vertices[i];
     double *rest = s->rest + 3 * (size_t)i;
     const double *lambda;
@@ -9851,14 +9914,13 @@ static gx_result gxp_add_vertex(gx_body *body, const gxp_skin_face *face, const 
     lambda = body->scratch.boundary.lambdas + 4 * (size_t)slot;
     gxp_weigh_point(face, lambda, s->copies + 4 * (size_t)i, s->weights + 4 * (size_t)i, v->slots);
     for (n = 0; n < 4 && !face->outer; n++) v->slots[n] = own;
-    v->key = *key;
+    v->key = sought->key;
     v->corner = GXP_NONE;
     v->outer = face->outer;
     v->placed = 1;
-    v->noted = 0;
-    v->next = *gxp_vertex_bucket(s, key);
-    *gxp_vertex_bucket(s, key) = i;
-    s->point[i] = key->point;
+    v->next = *bucket;
+    *bucket = i;
+    s->point[i] = v->key.point;
     for (k = 0; k < 3; k++) {
         rest[k] = 0;
         for (n = 0; n < 4; n++)
@@ -9872,26 +9934,45 @@ static gx_result gxp_add_vertex(gx_body *body, const gxp_skin_face *face, const 
     return GX_OK;
 }
 
-/* Notes a vertex that may have changed. */
-static gx_result gxp_note_vertex(gx_body *body, uint32_t vertex) {
-    gxp_skin_vertex *v = &body->skin.vertices[vertex];
-    if (v->noted) return GX_OK;
-    v->noted = 1;
-    return gxp_push(body, &body->skin.changed[0], vertex);
+/* Finds or appends the vertex of a point, and notes it: it may have changed. */
+static gx_result gxp_find_vertex(gx_body *body, const gxp_skin_face *face, const gxp_sought *sought, uint32_t point,
+                                 uint32_t *vertex) {
+    const gxp_skin *s = &body->skin;
+    gx_result result;
+    for (*vertex = *gxp_vertex_bucket(&body->skin, sought->hash); *vertex != GXP_NONE;
+         *vertex = s->vertices[*vertex].next)
+        if (memcmp(&s->vertices[*vertex].key, &sought->key, sizeof sought->key) == 0)
+            return gxp_include(body, &body->skin.changed[0], *vertex);
+    result = gxp_vertex_room(body);
+    if (result == GX_OK) result = gxp_add_vertex(body, face, sought, point, vertex);
+    return result == GX_OK ? gxp_include(body, &body->skin.changed[0], *vertex) : result;
 }
 
-/* Finds or appends the vertex of a point. */
-static gx_result gxp_find_vertex(gx_body *body, const gxp_skin_face *face, uint32_t point, uint32_t *vertex) {
+#define GXP_SOUGHT 8u /* keys that are sought together */
+
+/* Finds or appends the vertices of points of a face. Memory is asked for what several keys need before the first of
+   them is compared. */
+static gx_result gxp_find_vertices(gx_body *body, const gxp_skin_face *face, const uint32_t *points, uint32_t count,
+                                   uint32_t *vertices) {
     gxp_skin *s = &body->skin;
-    gxp_skin_key key;
-    gx_result result;
-    gxp_make_key(body, face, point, &key);
-    *vertex = s->vertex_buckets.count > 0 ? *gxp_vertex_bucket(s, &key) : GXP_NONE;
-    for (; *vertex != GXP_NONE; *vertex = s->vertices[*vertex].next)
-        if (memcmp(&s->vertices[*vertex].key, &key, sizeof key) == 0) return gxp_note_vertex(body, *vertex);
-    result = gxp_vertex_room(body);
-    if (result == GX_OK) result = gxp_add_vertex(body, face, &key, point, vertex);
-    return result == GX_OK ? gxp_note_vertex(body, *vertex) : result;
+    gxp_sought sought[GXP_SOUGHT];
+    uint32_t i;
+    gx_result result = GX_OK;
+    for (; count > 0 && result == GX_OK; count -= i, points += i, vertices += i) {
+        const uint32_t n = count < GXP_SOUGHT ? count : GXP_SOUGHT;
+        for (i = 0; i < n; i++) {
+            gxp_make_key(body, face, points[i], &sought[i].key);
+            sought[i].hash = gxp_hash_key(&sought[i].key);
+            GXP_PREFETCH(gxp_vertex_bucket(s, sought[i].hash));
+        }
+        for (i = 0; i < n; i++) {
+            const uint32_t first = *gxp_vertex_bucket(s, sought[i].hash);
+            if (first != GXP_NONE) GXP_PREFETCH(&s->vertices[first]);
+        }
+        for (i = 0; i < n && result == GX_OK; i++)
+            result = gxp_find_vertex(body, face, &sought[i], points[i], &vertices[i]);
+    }
+    return result;
 }
 
 /* Removes a vertex without triangles. The last one takes its place. */
@@ -9900,18 +9981,20 @@ static gx_result gxp_drop_vertex(gx_body *body, uint32_t vertex) {
     const uint32_t last = --s->vertex_count;
     uint32_t *link, corner;
     gx_result result = GX_OK;
-    for (link = gxp_vertex_bucket(s, &s->vertices[vertex].key); *link != vertex; link = &s->vertices[*link].next) {}
+    for (link = gxp_vertex_bucket(s, gxp_hash_key(&s->vertices[vertex].key)); *link != vertex;
+         link = &s->vertices[*link].next) {}
     *link = s->vertices[vertex].next;
     if (!s->vertices[vertex].outer) {
         s->slots[s->vertices[vertex].slots[0]].next = s->free_slot;
         s->free_slot = s->vertices[vertex].slots[0];
     }
     if (vertex == last) return GX_OK;
-    for (link = gxp_vertex_bucket(s, &s->vertices[last].key); *link != last; link = &s->vertices[*link].next) {}
+    for (link = gxp_vertex_bucket(s, gxp_hash_key(&s->vertices[last].key)); *link != last;
+         link = &s->vertices[*link].next) {}
     *link = vertex;
     for (corner = s->vertices[last].corner; corner != GXP_NONE; corner = s->links[corner / 3].corner_next[corner % 3]) {
         s->triangles[corner] = vertex;
-        if (result == GX_OK) result = gxp_push(body, &s->changed[1], corner / 3);
+        if (result == GX_OK) result = gxp_include(body, &s->changed[1], corner / 3);
     }
     gxp_copy_row(body, GXP_SKIN_VERTICES, last, vertex);
     s->vertices[vertex].placed = 1;
@@ -9957,33 +10040,59 @@ static void gxp_unlink_triangle(gxp_skin *s, uint32_t t) {
         s->first.data[s->element[t]] = own->next;
 }
 
-/* Removes a triangle. The last one takes its place. */
+/* Removes a triangle. Its place is a gap. */
 static gx_result gxp_drop_triangle(gx_body *body, uint32_t t) {
     gxp_skin *s = &body->skin;
-    const uint32_t last = s->triangle_count - 1;
     uint32_t k;
-    gx_result result = gxp_push(body, &s->changed[1], t);
-    for (k = 0; k < 3 && result == GX_OK; k++) result = gxp_note_vertex(body, s->triangles[3 * t + k]);
+    gx_result result = gxp_push(body, &s->gaps, t);
+    if (result == GX_OK) result = gxp_include(body, &s->changed[1], t);
+    for (k = 0; k < 3 && result == GX_OK; k++) result = gxp_include(body, &s->changed[0], s->triangles[3 * t + k]);
     if (result != GX_OK) return result;
     gxp_unlink_triangle(s, t);
-    s->triangle_count--;
-    if (t == last) return GX_OK;
-    gxp_unlink_triangle(s, last);
-    gxp_copy_row(body, GXP_SKIN_TRIANGLES, last, t);
-    gxp_link_triangle(s, t);
+    s->element[t] = GXP_NONE;
     return GX_OK;
+}
+
+/* Puts the last triangles into the gaps that are left. */
+static void gxp_close_gaps(gx_body *body) {
+    gxp_skin *s = &body->skin;
+    while (s->gaps.count > 0) {
+        const uint32_t last = s->triangle_count - 1;
+        if (s->triangle_count > 0 && s->element[last] == GXP_NONE) {
+            s->triangle_count--;
+            continue;
+        }
+        s->gaps.count--;
+        if (s->gaps.data[s->gaps.count] >= s->triangle_count) continue;
+        gxp_unlink_triangle(s, last);
+        gxp_copy_row(body, GXP_SKIN_TRIANGLES, last, s->gaps.data[s->gaps.count]);
+        gxp_link_triangle(s, s->gaps.data[s->gaps.count]);
+        s->triangle_count--;
+    }
+}
+
+/* The place of a new triangle: a gap, or behind all others */
+static gx_result gxp_triangle_place(gx_body *body, uint32_t *t) {
+    gxp_skin *s = &body->skin;
+    gx_result result = GX_OK;
+    *t = s->triangle_count;
+    if (s->gaps.count > 0) {
+        *t = s->gaps.data[--s->gaps.count];
+        return GX_OK;
+    }
+    result = gxp_grow_rows(body, GXP_SKIN_TRIANGLES, 1);
+    if (result == GX_OK) result = gxp_include(body, &s->changed[1], *t);
+    if (result == GX_OK) s->triangle_count++;
+    return result;
 }
 
 static gx_result gxp_add_skin_triangle(gx_body *body, const gxp_skin_face *face, const uint32_t vertex[3], int inward) {
     gxp_skin *s = &body->skin;
-    const uint32_t t = s->triangle_count;
-    uint32_t k, j, *corner;
-    gx_result result = gxp_grow_rows(body, GXP_SKIN_TRIANGLES, 1);
-    if (result == GX_OK) result = gxp_push(body, &s->changed[1], t);
+    uint32_t t, k, j, *corner;
+    const gx_result result = gxp_triangle_place(body, &t);
     if (result != GX_OK) return result;
     corner = s->triangles + 3 * (size_t)t;
     for (k = 0; k < 3; k++) corner[k] = vertex[inward ? 2 - k : k];
-    s->triangle_count++;
     s->element[t] = face->element;
     s->cell[t] = face->cell;
     s->material[t] = body->cells.data[face->cell].material;
@@ -10014,15 +10123,14 @@ static gx_result gxp_add_skin_facet(gx_body *body, const gxp_skin_face *face, ui
     gxb_complex *cx = body->complex;
     gxp_words *points = &body->skin.corner_points, *vertices = &body->skin.corner_vertices;
     const int inward = gxb_complex_facet(cx, facet)->leaf[0] == leaf;
-    uint32_t *p, *v, e0, en, i, n, vertex = GXP_NONE;
+    uint32_t *p, *v, e0, en, i, n;
     gx_result result = gxb_facet_resolve_edges(cx, facet, &e0, &en);
-    points->count = vertices->count = 0;
-    for (i = 0; i < en && result == GX_OK; i++) {
-        const uint32_t point = gxb_complex_edge_start(cx, gxp_item(cx, e0 + i));
-        result = gxp_find_vertex(body, face, point, &vertex);
-        if (result == GX_OK) result = gxp_push(body, points, point);
-        if (result == GX_OK) result = gxp_push(body, vertices, vertex);
-    }
+    if (result == GX_OK) result = gxp_start_words(body, points, en);
+    if (result == GX_OK) result = gxp_start_words(body, vertices, en);
+    if (result != GX_OK) return result;
+    for (i = 0; i < en; i++) points->data[i] = gxb_complex_edge_start(cx, gxp_item(cx, e0 + i));
+    points->count = vertices->count = en;
+    result = gxp_find_vertices(body, face, points->data, en, vertices->data);
     p = points->data;
     v = vertices->data;
     for (n = points->count, i = 0; n >= 3 && result == GX_OK; n--) {
@@ -10125,15 +10233,15 @@ static gx_result gxp_skin_leaf(gx_body *body, uint32_t leaf, gxp_skin_face *face
 
 /* Adds the outer faces of an element that no cut has touched. */
 static gx_result gxp_skin_whole(gx_body *body, gxp_skin_face *face) {
-    uint32_t k, j, vertex[3];
+    const uint32_t *node = gxb_complex_element_nodes(body->complex, face->element);
+    uint32_t k, j, point[3], vertex[3];
     gx_result result = GX_OK;
     face->plane = 0;
     for (k = 0; k < 4 && result == GX_OK; k++) {
         if (gxp_neighbour(body, face->element, k) != GXP_NONE) continue;
         result = gxp_outer_face(body, k, face);
-        for (j = 0; j < 3 && result == GX_OK; j++)
-            result = gxp_find_vertex(
-                body, face, gxb_complex_element_nodes(body->complex, face->element)[gxp_outward[k][j]], &vertex[j]);
+        for (j = 0; j < 3; j++) point[j] = node[gxp_outward[k][j]];
+        if (result == GX_OK) result = gxp_find_vertices(body, face, point, 3, vertex);
         if (result == GX_OK) result = gxp_add_skin_triangle(body, face, vertex, 0);
     }
     return result;
@@ -10258,52 +10366,51 @@ static void gxp_rest_normal(const gxp_skin *s, uint32_t vertex, float *normal) {
     gxp_set_normal(normal, n);
 }
 
+/* Drops noted vertices without triangles. The last vertex takes the place of one that goes: it has triangles, since all
+   behind it have. */
 static gx_result gxp_drop_lonely_vertices(gx_body *body) {
     gxp_skin *s = &body->skin;
-    uint32_t i;
+    uint32_t i = s->vertex_count;
     gx_result result = GX_OK;
-    gxp_sort_unique(&s->changed[0]);
-    /* from the end, so that the last vertex, which takes the place of a dropped one, is not dropped itself */
-    for (i = s->changed[0].count; i-- > 0 && result == GX_OK;) {
-        const uint32_t vertex = s->changed[0].data[i];
-        if (s->vertices[vertex].corner == GXP_NONE) result = gxp_drop_vertex(body, vertex);
+    while (i-- > 0 && result == GX_OK) {
+        if (i / 32 >= s->changed[0].count || s->changed[0].data[i / 32] == 0)
+            i &= ~31u;
+        else if (s->vertices[i].corner == GXP_NONE)
+            result = gxp_drop_vertex(body, i);
     }
     return result;
 }
 
 /* Renews the normals of the noted vertices; skin.changed[0] keeps the vertices that differ from before. */
 static void gxp_renew_normals(gxp_skin *s) {
-    uint32_t i, n = 0;
-    for (i = 0; i < s->changed[0].count; i++) {
-        const uint32_t vertex = s->changed[0].data[i];
+    gxp_words *changed = &s->changed[0];
+    uint32_t i;
+    for (i = gxp_next_of_set(changed, 0); i < s->vertex_count; i = gxp_next_of_set(changed, i + 1)) {
         float normal[3];
-        if (vertex >= s->vertex_count) continue;
-        memcpy(normal, s->normal + 3 * (size_t)vertex, sizeof normal);
-        gxp_rest_normal(s, vertex, normal);
-        if (s->vertices[vertex].placed || memcmp(normal, s->normal + 3 * (size_t)vertex, sizeof normal) != 0)
-            s->changed[0].data[n++] = vertex;
-        memcpy(s->normal + 3 * (size_t)vertex, normal, sizeof normal);
-        s->vertices[vertex].placed = s->vertices[vertex].noted = 0;
+        memcpy(normal, s->normal + 3 * (size_t)i, sizeof normal);
+        gxp_rest_normal(s, i, normal);
+        if (!s->vertices[i].placed && memcmp(normal, s->normal + 3 * (size_t)i, sizeof normal) == 0)
+            gxp_exclude(changed, i);
+        memcpy(s->normal + 3 * (size_t)i, normal, sizeof normal);
+        s->vertices[i].placed = 0;
     }
-    s->changed[0].count = n;
 }
 
-/* Turns the list of changed items into ranges. */
+/* Turns the set of changed items into ranges. */
 static gx_result gxp_make_ranges(gx_body *body, int kind, uint32_t count) {
     gxp_skin *s = &body->skin;
     gxp_words *changed = &s->changed[kind];
     gx_result result = GX_OK;
     uint32_t i, n = 0;
-    gxp_sort_unique(changed);
-    for (i = 0; i < changed->count && changed->data[i] < count && result == GX_OK; i++) {
-        if (n > 0 && s->ranges[kind][n - 1].first + s->ranges[kind][n - 1].count == changed->data[i]) {
+    for (i = gxp_next_of_set(changed, 0); i < count; i = gxp_next_of_set(changed, i + 1)) {
+        if (n > 0 && s->ranges[kind][n - 1].first + s->ranges[kind][n - 1].count == i) {
             s->ranges[kind][n - 1].count++;
             continue;
         }
         result =
             gxp_reserve(&body->config.allocator, &s->ranges[kind], sizeof **s->ranges, n, &s->range_capacity[kind], 1);
         if (result != GX_OK) break;
-        s->ranges[kind][n].first = changed->data[i];
+        s->ranges[kind][n].first = i;
         s->ranges[kind][n++].count = 1;
     }
     s->range_count[kind] = n;
@@ -10319,8 +10426,10 @@ static gx_result gxp_restart_skin(gx_body *body, const gx_skin_desc *desc) {
     s->desc = *desc;
     s->vertex_count = s->triangle_count = s->slot_count = 0;
     s->free_slot = GXP_NONE;
-    s->changed[0].count = s->changed[1].count = s->vertex_buckets.count = s->slot_buckets.count = 0;
-    result = gxp_group_corners(body);
+    s->changed[0].count = s->changed[1].count = s->gaps.count = s->vertex_buckets.count = s->slot_buckets.count = 0;
+    s->bucket_mask = 0;
+    result = gxp_add_bucket(body);
+    if (result == GX_OK) result = gxp_group_corners(body);
     if (result == GX_OK) result = gxp_start_words(body, &s->first, body->mesh.element_count);
     if (result == GX_OK) result = gxp_start_words(body, &s->dirty, body->mesh.element_count);
     if (result != GX_OK) return result;
@@ -10340,6 +10449,7 @@ static gx_result gxp_remake_elements(gx_body *body) {
     for (i = 0; i < s->dirty.count && result == GX_OK; i++) result = gxp_skin_element(body, s->dirty.data[i]);
     s->dirty.count = 0;
     if (result != GX_OK) return result;
+    gxp_close_gaps(body);
     result = gxp_drop_lonely_vertices(body);
     if (result == GX_OK) gxp_renew_normals(s);
     return result;
@@ -10357,11 +10467,25 @@ static gx_result gxp_mark_fragments(gx_body *body) {
     return result;
 }
 
+/* Lets one column grow, of vertices or triangles, that has less than a share of its rows left: so no call pays for all
+   columns. */
+static gx_result gxp_grow_skin_ahead(gx_body *body, uint32_t share) {
+    uint32_t table, i;
+    for (table = GXP_SKIN_VERTICES; table <= GXP_SKIN_TRIANGLES; table++)
+        for (i = 0; i < gxp_tables[table].column_count; i++) {
+            const gxp_column *column = &gxp_tables[table].columns[i];
+            const size_t capacity = *gxp_capacity_at(body, column), count = gxp_count(body, table);
+            if (count + capacity / share > capacity) return gxp_grow_column(body, column, count, capacity + 1);
+        }
+    return GX_OK;
+}
+
 /* Brings the skin up to date. After an error it counts as unmade, so that the next call makes all of it. */
 static gx_result gxp_update_skin(gx_body *body, const gx_skin_desc *desc) {
     gxp_skin *s = &body->skin;
     const int all = !s->made || desc->crease_angle < s->desc.crease_angle ||
                     desc->crease_angle > s->desc.crease_angle || desc->smooth_cuts != s->desc.smooth_cuts;
+    const int idle = !all && s->dirty.count == 0;
     gx_result result;
     s->made = 0;
     s->range_count[0] = s->range_count[1] = 0;
@@ -10376,6 +10500,7 @@ static gx_result gxp_update_skin(gx_body *body, const gx_skin_desc *desc) {
     if (result == GX_OK)
         result = gxp_reserve(&body->config.allocator, &s->positions, 3 * sizeof(double), 0, &s->position_capacity,
                              s->vertex_count);
+    if (result == GX_OK) result = gxp_grow_skin_ahead(body, idle ? 4 : 8);
     if (result == GX_OK) s->made = 1;
     return result;
 }
@@ -10708,16 +10833,21 @@ static void gxp_fit_clusters(gx_body *body) {
     gxp_tree *tree = &body->tree;
     const uint32_t *marks = tree->marks.data + tree->cluster_count - 1;
     gxp_bounds *boxes = tree->boxes + tree->cluster_count - 1;
+    const int bends = body->copies.bends;
     uint32_t i, j;
-    int k;
     for (i = 0; i < tree->cluster_count; i++)
         if (marks[i] & GXP_BOX_MOVED) gxp_empty_bounds(&boxes[i]);
     tree->wild = 0;
     for (i = 0; i < body->copies.count; i++) {
         const uint32_t node = body->copies.node[i];
         gxp_bounds own;
-        gxp_reach_bounds(body, i, &own);
-        for (k = 0; k < 3; k++) tree->wild |= !gxp_is_near(own.low[k]) || !gxp_is_near(own.high[k]);
+        if (bends)
+            gxp_reach_bounds(body, i, &own);
+        else
+            gxp_copy_bounds(body, node, i, &own);
+        /* the sum is not near where one of its terms is not */
+        tree->wild |= !gxp_is_near(fabs(own.low[0]) + fabs(own.low[1]) + fabs(own.low[2]) + fabs(own.high[0]) +
+                                   fabs(own.high[1]) + fabs(own.high[2]));
         for (j = tree->node_first.data[node]; j < tree->node_first.data[node + 1]; j++)
             if (marks[tree->node_clusters.data[j]] & GXP_BOX_MOVED)
                 gxp_add_bounds(&boxes[tree->node_clusters.data[j]], &own);
@@ -10752,28 +10882,35 @@ static gx_result gxp_refit_tree(gx_body *body) {
     return GX_OK;
 }
 
-/* How far copies have moved since they were seen last: the largest coordinate, HUGE_VAL if one is not finite. Sums show
-   what is not finite, which comparisons may not. */
-static double gxp_drift(const gx_body *body) {
+/* By how much the way of each copy since it was seen last differs from *shift, the middle of all ways: the largest
+   coordinate, HUGE_VAL if one is not finite. Sums show what is not finite, which comparisons may not. */
+static double gxp_drift(const gx_body *body, double shift[3]) {
     const double *u = body->copies.displacement, *seen = body->copies.seen;
-    double most[3] = {0, 0, 0}, sum[3] = {0, 0, 0};
+    double least[3], most[3], sum[3] = {0, 0, 0}, drift = 0, way;
     uint32_t i;
     int k;
+    for (k = 0; k < 3; k++) least[k] = most[k] = body->copies.count > 0 ? u[k] - seen[k] : 0;
     for (i = 0; i < body->copies.count; i++, u += 3, seen += 3)
         for (k = 0; k < 3; k++) {
-            const double way = fabs(u[k] - seen[k]);
+            way = u[k] - seen[k];
+            least[k] = gxp_less(way, least[k]);
             most[k] = gxp_more(way, most[k]);
-            sum[k] += way;
+            sum[k] += fabs(way);
         }
-    return gxp_is_finite(sum[0] + sum[1] + sum[2]) ? gxp_more(most[0], gxp_more(most[1], most[2])) : HUGE_VAL;
+    for (k = 0; k < 3; k++) {
+        shift[k] = 0.5 * least[k] + 0.5 * most[k];
+        way = gxp_more(most[k] - shift[k], shift[k] - least[k]) + GXP_TREE_MARGIN * (most[k] - least[k]);
+        drift = gxp_more(way + GXP_TREE_MARGIN * fabs(shift[k]), drift); /* roundings when something is shifted */
+    }
+    return gxp_is_finite(sum[0] + sum[1] + sum[2]) ? drift : HUGE_VAL;
 }
 
-/* Brings the boxes up to date where copies have moved farther than `most`. *slack: cells are at most so far outside of
-   their boxes. One pass over the copies. Errors: MEMORY, LIMIT. */
-static gx_result gxp_refit_loosely(gx_body *body, double most, double *slack) {
-    *slack = body->tree.cluster_count > 0 ? gxp_drift(body) * (1 + GXP_TREE_MARGIN) : HUGE_VAL;
+/* Brings the boxes up to date where the body has changed by more than `most`. *slack: cells are at most so far outside
+   of their boxes, if these are moved by *shift. One pass over the copies. Errors: MEMORY, LIMIT. */
+static gx_result gxp_refit_loosely(gx_body *body, double most, double *slack, double shift[3]) {
+    *slack = body->tree.cluster_count > 0 ? gxp_drift(body, shift) : HUGE_VAL;
     if (*slack <= most && !body->copies.bends) return GX_OK; /* drift does not see what an A moves */
-    *slack = 0;
+    *slack = shift[0] = shift[1] = shift[2] = 0;
     return gxp_refit_tree(body);
 }
 
@@ -10881,8 +11018,8 @@ typedef struct gxp_boxes_walk {
     /* Called for each element whose box meets some of the boxes, within the slack: `count` of them, ascending. place:
        in mesh.box_elements. Elements come in an order that is always the same. */
     gx_result (*visit)(gx_body *body, struct gxp_boxes_walk *walk, uint32_t place, const uint32_t *met, uint32_t count);
-    const gxp_bounds *boxes;
-    double slack; /* as gxp_refit_loosely gave it */
+    const gxp_bounds *boxes; /* moved back by the shift that gxp_refit_loosely gave */
+    double slack;            /* as gxp_refit_loosely gave it */
 } gxp_boxes_walk;
 
 /* Appends to tree.met those of its last `count` boxes that meet a box of the tree. Returns their number; there is room.
@@ -11344,6 +11481,7 @@ typedef struct gxp_near {
 typedef struct gxp_near_walk {
     gxp_walk walk;
     const double *point;
+    double slack;                             /* cells are at most so far outside of their boxes */
     int (*admits)(void *user, uint32_t cell); /* NULL: all cells are admitted */
     void *user;
     gxp_near near;
@@ -11353,11 +11491,13 @@ typedef struct gxp_near_walk {
 #define GXP_NEAR_MARGIN 1e-12
 
 static double gxp_bound_distance(const gxp_walk *walk, const gxp_bounds *box) {
-    const double *x = ((const gxp_near_walk *)(const void *)walk)->point;
+    const gxp_near_walk *own = (const gxp_near_walk *)(const void *)walk;
+    const double *x = own->point;
     double square = 0;
     int k;
     for (k = 0; k < 3; k++) {
-        const double below = box->low[k] - x[k], above = x[k] - box->high[k], most = below > above ? below : above;
+        const double below = box->low[k] - x[k], above = x[k] - box->high[k],
+                     most = (below > above ? below : above) - own->slack;
         if (most > 0) square += most * most;
     }
     return square * (1 - GXP_NEAR_MARGIN);
@@ -11519,15 +11659,16 @@ static gx_result gxp_visit_near(gx_body *body, gxp_walk *walk, uint32_t element)
 }
 
 /* Finds the cell nearest to a point of space, among those for which admits(user, cell) is not 0 (NULL: all), of equally
-   near ones the first one. The point lies in none of them (gxp_find_cells_at). */
-static gx_result gxp_find_nearest(gx_body *body, const double point[3], int (*admits)(void *user, uint32_t cell),
-                                  void *user, gxp_near *near) {
+   near ones the first one. The point lies in none of them (gxp_find_cells_at). slack: of the tree's boxes */
+static gx_result gxp_find_nearest(gx_body *body, const double point[3], double slack,
+                                  int (*admits)(void *user, uint32_t cell), void *user, gxp_near *near) {
     gxp_near_walk own;
     gx_result result;
     own.walk.bound = gxp_bound_distance;
     own.walk.visit = gxp_visit_near;
     own.walk.limit = GXP_TREE_ALL;
     own.point = point;
+    own.slack = slack;
     own.admits = admits;
     own.user = user;
     memset(&own.near, 0, sizeof own.near);
@@ -11590,7 +11731,7 @@ static gx_result gxp_make_hit(gx_body *body, const double point[3], gx_hit *hit)
     if (body->tree.found.count > 0)
         gxp_hit_inside(body, body->tree.found.data[0], point, hit);
     else {
-        result = gxp_find_nearest(body, point, NULL, NULL, &near);
+        result = gxp_find_nearest(body, point, 0, NULL, NULL, &near);
         if (result == GX_OK) gxp_hit_near(body, &near, hit);
     }
     return result;
@@ -15083,6 +15224,9 @@ static gx_result gxp_prepare_quads(gx_blade *blade) {
     if (result == GX_OK)
         result = gxp_reserve(&blade->body->config.allocator, &blade->boxes, sizeof *blade->boxes, 0,
                              &blade->box_capacity, count);
+    if (result == GX_OK)
+        result = gxp_reserve(&blade->body->config.allocator, &blade->sought, sizeof *blade->sought, 0,
+                             &blade->sought_capacity, count);
     for (q = 0; q < count && result == GX_OK; q++) {
         const double *x = blade->quads.data + 12 * (size_t)q;
         gxp_set_plate(&blade->plates[2 * q], x, x + 3, x + 6);
@@ -15091,6 +15235,8 @@ static gx_result gxp_prepare_quads(gx_blade *blade) {
             const double of[4] = {x[k], x[3 + k], x[6 + k], x[9 + k]};
             blade->boxes[q].low[k] = gxp_least(of) - blade->largest;
             blade->boxes[q].high[k] = gxp_greatest(of) + blade->largest;
+            blade->sought[q].low[k] = blade->boxes[q].low[k] - blade->shift[k];
+            blade->sought[q].high[k] = blade->boxes[q].high[k] - blade->shift[k];
         }
     }
     return result;
@@ -15118,11 +15264,11 @@ static void gxp_near_weights(const gx_body *body, gxp_close_cell *c, const doubl
         gxp_tet_weights(c->corners, x, weights);
 }
 
-/* The deformed corners of a cell, and what contains them */
+/* The deformed corners of a cell, and the box around it */
 static void gxp_place_near(const gx_body *body, gxp_close_cell *c) {
     const gxp_cell *row = &body->cells.data[c->cell];
     double moved[12];
-    int n, k;
+    int k;
     gxp_moved_corners(body, row, moved);
     memcpy(c->corners, moved, sizeof moved);
     for (k = 0; k < 3; k++) {
@@ -15131,25 +15277,41 @@ static void gxp_place_near(const gx_body *body, gxp_close_cell *c) {
         c->high[k] = gxp_greatest(x);
         c->middle[k] = 0.25 * (x[0] + x[1] + x[2] + x[3]);
     }
-    c->radius = 0;
-    for (n = 0; n < 4; n++) c->radius = gxp_more(c->radius, gxp_square_distance(c->middle, c->corners[n]));
-    c->radius = sqrt(c->radius);
     c->is_bent = (uint8_t)gxp_is_bent(body, row);
-    if (c->is_bent) gxp_contain_bent(body, c);
-    c->is_divided = (uint8_t)(gxb_complex_root(body->complex, row->element) & 1);
-    c->has_facets = c->has_heights = 0;
     c->size = body->mesh.sizes[row->element];
+    c->radius = -1;
+    if (c->is_bent) gxp_contain_bent(body, c);
+}
+
+/* The radius of a ball around the corners of a cell, found when it is first asked for */
+static double gxp_near_radius(gxp_close_cell *c) {
+    double square = 0;
+    int n;
+    if (c->radius >= 0) return c->radius;
+    for (n = 0; n < 4; n++) square = gxp_more(square, gxp_square_distance(c->middle, c->corners[n]));
+    return c->radius = sqrt(square);
+}
+
+/* Is a cell within its element's size of a quad, in whose box it is? */
+static int gxp_is_near_quad(const gx_blade *blade, gxp_close_cell *c, uint32_t quad) {
+    const double reach = gxp_near_radius(c) + c->size;
+    return gxp_is_near_plate(&blade->plates[2 * quad], c->middle, reach) ||
+           gxp_is_near_plate(&blade->plates[2 * quad + 1], c->middle, reach);
 }
 
 /* Appends a cell to the near ones. */
-static gx_result gxp_push_near(gx_blade *blade, const gxp_close_cell *c) {
+static gx_result gxp_push_near(gx_blade *blade, gxp_close_cell *c) {
     gxp_vicinity *near = &blade->near;
+    const uint32_t element = blade->body->cells.data[c->cell].element;
     const gx_result result =
         gxp_reserve(&blade->body->config.allocator, &near->cells, sizeof *near->cells, near->count, &near->capacity, 1);
     if (result != GX_OK) return result;
     near->of_cell.data[c->cell] = near->count;
-    near->cells[near->count] = *c;
-    near->cells[near->count++].stretch = gxp_stretch(blade->body, c->cell);
+    (void)gxp_near_radius(c);
+    c->old = gxp_old_layer(blade, c->cell);
+    c->is_divided = (uint8_t)(gxb_complex_root(blade->body->complex, element) & 1);
+    c->has_facets = c->has_heights = c->has_stretch = 0;
+    near->cells[near->count++] = *c;
     return GX_OK;
 }
 
@@ -15180,9 +15342,7 @@ static gx_result gxp_add_near_cells(gx_body *body, gxp_boxes_walk *walk, uint32_
         for (i = 0, c.quad = GXP_NONE; i < count; i++) {
             if (gxp_gap(&blade->boxes[met[i]], &box) > 0) continue;
             if (c.quad == GXP_NONE) c.quad = met[i];
-            if (gxp_is_near_plate(&blade->plates[2 * met[i]], c.middle, c.radius + c.size) ||
-                gxp_is_near_plate(&blade->plates[2 * met[i] + 1], c.middle, c.radius + c.size))
-                break;
+            if (gxp_is_near_quad(blade, &c, met[i])) break;
         }
         if (i < count) result = gxp_push_near(blade, &c);
     }
@@ -15224,17 +15384,6 @@ static void gxp_join_near(gx_blade *blade) {
     }
     for (i = 0; i < near->count; i++)
         for (k = 0; k < 4; k++) first[body->cells.data[near->cells[i].cell].copies[k]] = 0;
-}
-
-/* Words by cell or copy, which keep what they have; new ones are 0. */
-static gx_result gxp_extend_words(gx_body *body, gxp_words *words, uint32_t count) {
-    gx_result result;
-    if (count <= words->count) return GX_OK;
-    result = gxp_words_room(body, words, count - words->count);
-    if (result != GX_OK) return result;
-    memset(words->data + words->count, 0, (count - words->count) * sizeof *words->data);
-    words->count = count;
-    return GX_OK;
 }
 
 /* Numbers the layers in the order of their first cells. */
@@ -15309,7 +15458,8 @@ static gx_result gxp_order_near(gx_blade *blade) {
 /* Brings the tree of boxes up to date for the blade. Blames a copy that is not finite or out of range. */
 static gx_result gxp_refit_near(gx_blade *blade, double most, gx_failure *failure) {
     uint32_t wild;
-    const gx_result result = gxp_refit_loosely(blade->body, most * blade->body->mesh.mean_size, &blade->slack);
+    const gx_result result =
+        gxp_refit_loosely(blade->body, most * blade->body->mesh.mean_size, &blade->slack, blade->shift);
     if (gxp_end(failure, result) != GX_OK) return result;
     wild = gxp_wild_copy(blade->body);
     return wild == GXP_NONE ? GX_OK : gxp_check_copy(blade->body, wild, failure);
@@ -15324,7 +15474,7 @@ static gx_result gxp_find_near(gx_blade *blade, const gxp_words *scope) {
     blade->near.count = blade->near.facet_count = 0;
     if (result != GX_OK) return result;
     own.walk.visit = gxp_add_near_cells;
-    own.walk.boxes = blade->boxes;
+    own.walk.boxes = blade->sought;
     own.walk.slack = blade->slack;
     own.blade = blade;
     own.scope = scope;
@@ -15466,14 +15616,23 @@ static void gxp_seek_triangle(uint32_t index, const double x[3], const double we
     memcpy(sight->weights, weights, sizeof sight->weights);
 }
 
+static double gxp_near_stretch(const gx_body *body, gxp_close_cell *c) {
+    if (!c->has_stretch) {
+        c->stretch = gxp_stretch(body, c->cell);
+        c->has_stretch = 1;
+    }
+    return c->stretch;
+}
+
 /* A cell that does not contain the place: is its material nearer than what was found before? The nearest point of its
    surface is on a wall, or on a face whose outer side the place is on. */
 static gx_result gxp_seek_outside(gx_blade *blade, uint32_t index, const double x[3], gxp_sight *sight) {
     gxp_close_cell *c = &blade->near.cells[index];
-    double weights[4], beyond[5];
+    double weights[4], beyond[5], stretch;
     uint32_t i;
     if (gxp_square_to_box(x, c->low, c->high) >= sight->square) return GX_OK;
-    if (c->stretch < GXP_FLAT_MAP || c->stretch > GXP_BLOWN_MAP) return GX_OK; /* inverted: outside is inside */
+    stretch = gxp_near_stretch(blade->body, c);
+    if (stretch < GXP_FLAT_MAP || stretch > GXP_BLOWN_MAP) return GX_OK; /* inverted: outside is inside */
     gxp_near_weights(blade->body, c, x, weights);
     if (!c->has_heights) gxp_measure_heights(c);
     beyond[4] = 0;
@@ -15501,11 +15660,12 @@ static gx_result gxp_seek_outside(gx_blade *blade, uint32_t index, const double 
 /* Does a cell contain the place? Then it is found. */
 static gx_result gxp_seek_inside(gx_blade *blade, uint32_t index, const double x[3], gxp_sight *sight) {
     gxp_close_cell *c = &blade->near.cells[index];
-    double weights[4];
+    double weights[4], stretch;
     int own = 0;
     gx_result result = GX_OK;
     if (gxp_square_to_box(x, c->low, c->high) > 0) return GX_OK;
-    if (fabs(c->stretch) < GXP_FLAT_MAP || fabs(c->stretch) > GXP_BLOWN_MAP) return GX_OK;
+    stretch = fabs(gxp_near_stretch(blade->body, c));
+    if (stretch < GXP_FLAT_MAP || stretch > GXP_BLOWN_MAP) return GX_OK;
     gxp_near_weights(blade->body, c, x, weights);
     if (weights[0] >= 0 && weights[1] >= 0 && weights[2] >= 0 && weights[3] >= 0)
         result = gxp_is_own_part(blade->body, c, weights, &own);
@@ -16565,7 +16725,7 @@ static gx_result gxp_list_scope(gx_blade *blade, uint32_t layer, uint32_t old) {
     }
     for (i = near->layer_start.data[layer]; i < near->layer_start.data[layer + 1] && result == GX_OK; i++) {
         const gxp_close_cell *c = &near->cells[GXP_SECOND(near->order.data[i])];
-        if (old != GXP_NONE && gxp_old_layer(blade, c->cell) != old) continue;
+        if (old != GXP_NONE && c->old != old) continue;
         if (gxp_is_in_reach(c, blade->plates, triangles))
             result = gxp_push(blade->body, &blade->scope, blade->body->cells.slot[c->cell]);
     }
@@ -16605,12 +16765,15 @@ static gx_result gxp_add_surface(gx_blade *blade, uint32_t layer, uint32_t old) 
 /* Shares. Beads are places within the first of an element's size of the layer. A bead is off its way by less than the
    second of the tolerance. Edge and copies move by less than the third of the mean size, in all. A bead comes less far
    than the fourth of the least advance that is cut, and of half the mean size; and no move is worked out because of
-   what waits before the edge has come as far as the last of these. */
+   what waits before the edge has come as far as the fifth of these. Of edge and copies that move by more than the last
+   one, in mean sizes, no move is left out: the next one would have to be worked out, most often with this one made up
+   for in the same frame. */
 #define GXP_BEAD_REACH   0.5
 #define GXP_BEAD_OFF     0.25
 #define GXP_GLANCE_ROOM  0.75
 #define GXP_BEAD_COURSE  1.0
 #define GXP_LEAST_GLANCE 0.125
+#define GXP_FIRST_GLANCE 0.25
 
 /* A bead goes through so many cells at most at a move. One that is off its cell by less than the second, in weights,
    stays there. */
@@ -16785,9 +16948,12 @@ static gx_result gxp_judge_move(gx_blade *blade, const double *edge, uint32_t co
     double way;
     *verdict = GXP_GLANCE_AWAY;
     if (!glance->ready || glance->cut != blade->body->cuts.hash) return GX_OK;
+    way = gxp_measure_edge(blade, edge, count);
+    if (glance->edge.count == 0 && !(way <= GXP_FIRST_GLANCE * blade->step)) return GX_OK;
     *motion = gxp_measure_motion(blade->body);
-    way = glance->travelled + *motion + gxp_measure_edge(blade, edge, count);
+    way += glance->travelled + *motion;
     *verdict = way <= glance->room ? GXP_GLANCE_LITTLE : GXP_GLANCE_STRAIGHT;
+    if (glance->edge.count == 0 && !(way <= GXP_FIRST_GLANCE * blade->step)) *verdict = GXP_GLANCE_STRAIGHT;
     if (!(way <= 2 * blade->step)) *verdict = GXP_GLANCE_BENT;
     return gxp_follow_beads(blade, edge, count, verdict);
 }
@@ -16920,7 +17086,7 @@ static gx_result gxp_find_owners(gx_blade *blade, uint32_t layer) {
     gx_result result = GX_OK;
     blade->owners.count = 0;
     for (i = near->layer_start.data[layer]; i < near->layer_start.data[layer + 1] && result == GX_OK; i++) {
-        const uint32_t old = gxp_old_layer(blade, near->cells[GXP_SECOND(near->order.data[i])].cell);
+        const uint32_t old = near->cells[GXP_SECOND(near->order.data[i])].old;
         if (old == GXP_NONE || old == last) continue;
         last = old;
         if (blade->now.layers.data[old].front_count == 0) continue;
@@ -17397,8 +17563,7 @@ static gx_result gxp_keep_far_place(gx_blade *blade, const double *edge, uint32_
         memcpy(v.position, x, sizeof x);
     }
     if (!(least < 64 * blade->largest * blade->largest)) return GX_OK;
-    result = gxp_refit_tree(body);
-    if (result == GX_OK) result = gxp_find_nearest(body, v.position, NULL, NULL, &near);
+    result = gxp_find_nearest(body, v.position, blade->slack + gxp_size(blade->shift), NULL, NULL, &near);
     if (result != GX_OK || near.cell == GXP_NONE) return result;
     v.element = body->cells.data[near.cell].element;
     v.size = blade->largest;
@@ -18065,6 +18230,7 @@ static void gxp_release_blade(gx_blade *b) {
     gxp_release_points(body, &b->quads);
     gxp_release(a, b->plates, b->plate_capacity * sizeof *b->plates);
     gxp_release(a, b->boxes, b->box_capacity * sizeof *b->boxes);
+    gxp_release(a, b->sought, b->sought_capacity * sizeof *b->sought);
     gxp_release_points(body, &b->corners);
     gxp_release_words(body, &b->owners);
     gxp_release_words(body, &b->heirs);
@@ -20906,6 +21072,7 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_SPECK
 #undef GXP_SPECK_REACH
 #undef GXP_PLANE_GROUP
+#undef GXP_SOUGHT
 #undef GXP_COLUMN
 #undef GXP_TABLE
 #undef GXP_LIST
@@ -20986,6 +21153,7 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_GLANCE_ROOM
 #undef GXP_BEAD_COURSE
 #undef GXP_LEAST_GLANCE
+#undef GXP_FIRST_GLANCE
 #undef GXP_BEAD_FACES
 #undef GXP_BEAD_TOUCH
 #undef GXP_NEAR_SLACK

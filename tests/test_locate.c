@@ -549,7 +549,7 @@ START_TEST(walks_for_other_sections) {
             box.high[k] = box.low[k] + random_real(0, 0.5);
         }
         ck_assert_int_eq(gxp_walk_box(body, &box, collect, met), GX_OK);
-        ck_assert_int_eq(gxp_find_nearest(body, p, is_odd, NULL, &near), GX_OK);
+        ck_assert_int_eq(gxp_find_nearest(body, p, 0, is_odd, NULL, &near), GX_OK);
         for (slot = 0; slot < body->cells.count; slot++) {
             double x[4][3];
             int meets = body->cells.data[slot].kept != 0;

@@ -241,7 +241,7 @@ START_TEST(loose_boxes) {
     stage s = open_block(4, 3);
     const double edge[6] = {-4, 1.7, 1.8, 8, 1.9, 2.3};
     const double mean = s.body->mesh.mean_size;
-    double loose = -1;
+    double loose = -1, shift[3] = {1, 1, 1};
     size_t i;
     ck_assert_int_eq(gxp_refit_near(s.blade, slack, NULL), GX_OK);
     ck_assert(s.blade->slack == 0);
@@ -251,14 +251,20 @@ START_TEST(loose_boxes) {
     ck_assert(fabs(s.blade->slack - 0.7 * mean) < 1e-9 && s.body->copies.seen[0] == 0);
     ck_assert_int_eq(gxp_find_layers(s.blade, edge, edge, 2, NULL), GX_OK);
     check_near(s.blade, NULL, 0, 0);
-    s.view.displacement[7] += 0.06 * mean;
+    for (i = 0; i < s.view.copy_count; i++) s.view.displacement[3 * i] += 3 * mean; /* carried as a whole */
+    ck_assert_int_eq(gxp_refit_near(s.blade, slack, NULL), GX_OK);
+    ck_assert(fabs(s.blade->slack - 0.7 * mean) < 1e-9 && fabs(s.blade->shift[0] - 3 * mean) < 1e-9);
+    ck_assert(s.body->copies.seen[0] == 0);
+    ck_assert_int_eq(gxp_find_layers(s.blade, edge, edge, 2, NULL), GX_OK);
+    check_near(s.blade, NULL, 0, 1);
+    s.view.displacement[7] += 0.2 * mean;
     ck_assert_int_eq(gxp_refit_near(s.blade, slack, NULL), GX_OK);
     ck_assert(s.blade->slack == 0 && s.body->copies.seen[7] == s.view.displacement[7]);
     ck_assert_int_eq(gxp_find_layers(s.blade, edge, edge, 2, NULL), GX_OK);
-    check_near(s.blade, NULL, 0, 1);
+    check_near(s.blade, NULL, 0, 2);
     s.view.displacement[8] += 0.01 * mean; /* others want exact boxes */
-    ck_assert_int_eq(gxp_refit_loosely(s.body, 0, &loose), GX_OK);
-    ck_assert(loose == 0 && s.body->copies.seen[8] == s.view.displacement[8]);
+    ck_assert_int_eq(gxp_refit_loosely(s.body, 0, &loose, shift), GX_OK);
+    ck_assert(loose == 0 && shift[1] == 0 && s.body->copies.seen[8] == s.view.displacement[8]);
     stage_close(&s);
 }
 END_TEST
