@@ -68,8 +68,8 @@ gallery() {
     echo "# Scenes"
     echo
     echo "The scenes of the two papers, by their parameters where they give them, and two in which a blade cuts while the body moves"
-    echo "(\`overhang\`, \`surgeon\`), two whose body is made of closed surfaces (\`organ\`, \`trainer\`), and three that end in contact"
-    echo "(\`pile\`, \`lips\`, \`sausage\`); one file each in \`examples/\`."
+    echo "(\`overhang\`, \`surgeon\`), two whose body is made of closed surfaces (\`organ\`, \`trainer\`), three that end in contact"
+    echo "(\`pile\`, \`lips\`, \`sausage\`), and one whose ribbon is thinner than an element (\`ribbon\`); one file each in \`examples/\`."
     echo
     gallery "$@"
     echo
