@@ -632,8 +632,8 @@ The same steps of linear elements are off by $(awk -F, '$2 == "linear elements" 
     echo
     text "The error of the space comes on top: linear elements lock in slices that are thin beside them, cut or conforming. A \
 slice as thick as a quarter of an element bends 3 to 5 % as far as it should, as one element 38 %, as four elements 90 %; a \
-conforming mesh of one layer 35 %, of four layers 90 %. With affine copies, in the same cut meshes, slices thinner than an element \
-are off by $(affine_space)."
+conforming mesh of one layer 35 %, of four layers 90 %. With affine copies, in the same cut meshes, slices \
+are off by $(affine_space), each in the finest mesh in which it is thinner than an element."
     echo
     echo "![drops of slices and folds under refinement](charts/space.svg)"
     echo
