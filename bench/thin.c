@@ -636,7 +636,8 @@ static void run_newton(void) {
     free(at);
 }
 
-/* ns that a product takes for each element of a slice, the least of several short runs; affine: as gx_body_desc.affine_below */
+/* ns that a product takes for each element of a slice, the least of several short runs; affine: as
+ * gx_body_desc.affine_below */
 static double time_product(const slice *s, double affine, size_t *elements) {
     enum { RUNS = 25, MOST = 20000 };
     probe p = cut_probe(s, 0.3, affine, 1);
