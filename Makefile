@@ -45,7 +45,8 @@ help:
 	@echo "make check-all   check, then lint, compile tests, sanitizers, compilers, flags, platforms and pages; takes longer"
 	@echo "make examples    builds $(examples) in $(BUILD)/"
 	@echo "make scenes      runs the scenes, writes docs/SCENES.md; SMALL=1: small ones, $(BUILD)/scenes/SCENES.md"
-	@echo "make pictures    renders the scenes into docs/pictures/; installs f3d and a virtual display where they are missing"
+	@echo "make pictures    renders the scenes into docs/pictures/; installs f3d and a virtual display where they are missing;"
+	@echo "                 PICTURES=: of these scenes only"
 	@echo "make animation   pictures of the page on which one slices: the README's, docs/pictures/cut.webp, and page_*.png;"
 	@echo "                 installs Chromium, node and img2webp"
 	@echo "make lint        house rules of the four headers"
@@ -213,9 +214,9 @@ scenes: $(scenes:%=$(BUILD)/%)
 	$(if $(SMALL),,@sh tests/install.sh charts || true)
 	@CC="$(CC)" CFLAGS="$(CFLAGS)" sh examples/scenes.sh $(BUILD) $(if $(SMALL),$(BUILD)/scenes/SCENES.md --small,docs/SCENES.md) -- $(scenes)
 
-pictures: $(scenes:%=$(BUILD)/%)
+pictures: $(patsubst %,$(BUILD)/%,$(or $(PICTURES),$(scenes)))
 	@sh tests/install.sh pictures
-	@sh examples/pictures.sh $(BUILD) docs/pictures
+	@sh examples/pictures.sh $(BUILD) docs/pictures $(PICTURES)
 
 # The page on which one slices, recorded
 animation: web
@@ -289,7 +290,7 @@ check-settled:
 
 # All but the longest
 sanitize-scenes:
-	@$(MAKE) --no-print-directory -j$(JOBS) scenes SMALL=1 BUILD=$(BUILD)/sanitize CFLAGS="$(sanitizers)" scenes="$(filter-out trainer pile sausage,$(scenes))"
+	@$(MAKE) --no-print-directory -j$(JOBS) scenes SMALL=1 BUILD=$(BUILD)/sanitize CFLAGS="$(sanitizers)" scenes="$(filter-out trainer pile sausage ribbon,$(scenes))"
 
 # By libFuzzer (with sanitizers) if clang has it, starting from the corpus, for SECONDS. Otherwise, or with SEED or CASES, a loop over
 # seeds.

@@ -7233,9 +7233,12 @@ static void gxsp_task_strain_energy(void *context, size_t index) {
 /* For products in single precision: 4 N_i at each point, and (X_j - X_i) / (4 length) of the edges */
 static void gxsp_affine_round(const gxsp_affine_block *block, gxsp_singles *GXSP_RESTRICT shape,
                               gxsp_singles *GXSP_RESTRICT way) {
-    int k, l;
-    for (k = 0; k < 16; k++) GXSP_EACH_LANE(l) shape[k][l] = (float)(4 * block->shape[k / 4][k % 4][l]);
-    for (k = 0; k < 18; k++) GXSP_EACH_LANE(l) way[k][l] = (float)gxsp_affine_edge(block, k / 3, k % 3, l);
+    int p, k, l;
+    for (p = 0; p < 4; p++)
+        for (k = 0; k < 4; k++) GXSP_EACH_LANE(l) shape[4 * p + k][l] = (float)(4 * block->shape[p][k][l]);
+    for (k = 0; k < 9; k++) GXSP_EACH_LANE(l) way[k][l] = (float)block->edge[k][l];
+    for (k = 0; k < 6; k++) GXSP_EACH_LANE(l) way[9 + k][l] = (float)(block->edge[3 + k][l] - block->edge[k % 3][l]);
+    for (k = 0; k < 3; k++) GXSP_EACH_LANE(l) way[15 + k][l] = (float)(block->edge[6 + k][l] - block->edge[3 + k][l]);
 }
 
 /* The edges at a corner, and the corners at their other ends */
@@ -7288,30 +7291,34 @@ static void gxsp_singles_inertia(gxsp_singles *GXSP_RESTRICT shape, const float 
                                  gxsp_singles *GXSP_RESTRICT start, gxsp_singles *GXSP_RESTRICT x,
                                  gxsp_singles *GXSP_RESTRICT w, gxsp_singles *GXSP_RESTRICT y,
                                  gxsp_singles *GXSP_RESTRICT on_w) {
+    gxsp_singles force[3];
     int r, j, l;
-    for (r = 0; r < 3; r++) {
-        gxsp_singles force;
-        GXSP_EACH_LANE(l)
-        force[l] = mass[l] *
-                   (start[r][l] +
-                    0.125f * (shape[0][l] * (x[r][l] + w[r][l]) + shape[1][l] * (x[3 + r][l] + w[3 + r][l]) +
-                              shape[2][l] * (x[6 + r][l] + w[6 + r][l]) + shape[3][l] * (x[9 + r][l] + w[9 + r][l])));
-        for (j = 0; j < 4; j++) GXSP_EACH_LANE(l) {
-                y[3 * j + r][l] += shape[j][l] * force[l];
-                on_w[3 * j + r][l] += shape[j][l] * force[l];
-            }
-    }
+    for (r = 0; r < 3; r++) GXSP_EACH_LANE(l)
+    force[r][l] =
+        mass[l] * (start[r][l] +
+                   0.125f * (shape[0][l] * (x[r][l] + w[r][l]) + shape[1][l] * (x[3 + r][l] + w[3 + r][l]) +
+                             shape[2][l] * (x[6 + r][l] + w[6 + r][l]) + shape[3][l] * (x[9 + r][l] + w[9 + r][l])));
+    for (j = 0; j < 4; j++)
+        for (r = 0; r < 3; r++) GXSP_EACH_LANE(l) y[3 * j + r][l] += shape[j][l] * force[r][l];
+    for (j = 0; j < 4; j++)
+        for (r = 0; r < 3; r++) GXSP_EACH_LANE(l) on_w[3 * j + r][l] += shape[j][l] * force[r][l];
 }
 
-/* As gxsp_affine_collect */
+/* Forces on w at all points, 12 of each, to those on e: as gxsp_affine_collect. In one go, since compilers make no
+ * vectors of sums in memory here */
 static void gxsp_singles_collect(gxsp_singles *GXSP_RESTRICT shape, gxsp_singles *GXSP_RESTRICT w,
-                                 gxsp_singles *GXSP_RESTRICT y, gxsp_singles *GXSP_RESTRICT e) {
+                                 gxsp_singles *GXSP_RESTRICT e) {
     int k, r, l;
-    for (k = 0; k < 12; k++) GXSP_EACH_LANE(l) y[k][l] += w[k][l];
     for (k = 0; k < 6; k++) {
         const int i = gxsp_edge_ends[k][0], j = gxsp_edge_ends[k][1];
-        for (r = 0; r < 3; r++) GXSP_EACH_LANE(l)
-        e[3 * k + r][l] += shape[i][l] * w[3 * j + r][l] + shape[j][l] * w[3 * i + r][l];
+        for (r = 0; r < 3; r++) {
+            gxsp_singles *p = w + 3 * i + r, *q = w + 3 * j + r;
+            GXSP_EACH_LANE(l)
+            e[3 * k + r][l] = (((shape[i][l] * q[0][l] + shape[j][l] * p[0][l]) +
+                                (shape[4 + i][l] * q[12][l] + shape[4 + j][l] * p[12][l])) +
+                               (shape[8 + i][l] * q[24][l] + shape[8 + j][l] * p[24][l])) +
+                              (shape[12 + i][l] * q[36][l] + shape[12 + j][l] * p[36][l]);
+        }
     }
 }
 
@@ -7332,7 +7339,7 @@ static void gxsp_singles_return(gxsp_singles *GXSP_RESTRICT way, gxsp_singles *G
 
 /* As gxsp_affine_product, in single precision. y: 48 */
 static void gxsp_singles_product(const gxsp_pass *pass, const gxsp_affine_block *block, gxsp_singles *y) {
-    gxsp_singles shape[16], way[18], x[48], start[3], bend[18], forces[18], w[12], from[12], to[12];
+    gxsp_singles shape[16], way[18], x[48], start[3], bend[18], forces[18], w[12], from[12], on_w[48];
     float mass[GXSP_LANES];
     int p, k, l;
     gxsp_affine_round(block, shape, way);
@@ -7340,16 +7347,17 @@ static void gxsp_singles_product(const gxsp_pass *pass, const gxsp_affine_block 
     gxsp_singles_bend(way, x, bend);
     GXSP_EACH_LANE(l) mass[l] = (float)(0.125 * pass->rate * block->rest.mass[l]);
     memset(y, 0, 12 * sizeof *y);
-    memset(forces, 0, sizeof forces);
+    memset(on_w, 0, sizeof on_w);
     for (p = 0; p < 4; p++) {
+        gxsp_singles *to = on_w + 12 * p;
         gxsp_singles_corners(shape + 4 * p, x, bend, w);
         for (k = 0; k < 12; k++) GXSP_EACH_LANE(l) from[k][l] = w[k][l] - w[k % 3][l];
-        memset(to, 0, sizeof to);
         gxsp_kind_product(block->kind, &block->tangent[p], NULL, block->general ? &block->general[p] : NULL, 1, from,
                           to);
         if (pass->rate > 0) gxsp_singles_inertia(shape + 4 * p, mass, start, x, w, y, to);
-        gxsp_singles_collect(shape + 4 * p, to, y, forces);
+        for (k = 0; k < 12; k++) GXSP_EACH_LANE(l) y[k][l] += to[k][l];
     }
+    gxsp_singles_collect(shape, on_w, forces);
     gxsp_singles_return(way, forces, y);
 }
 

@@ -187,6 +187,7 @@ stepping() {
             stepping_rows "${scene}_$(block_name "$kind")" $scene "$kind" '$7 / 1000, $8'
         done
     done
+    for kind in BDF2 midpoint; do stepping_rows "affine_$kind" "slab_in_five affine" "$kind" '$7 / 1000, $8'; done
     cat <<END
 $styles
 set multiplot layout 1,2 title "Error of the motion of a cut body after 0.33 s, in the same space   ($(where stepping))" font "sans,15"
@@ -196,7 +197,9 @@ END
     for scene in slab_in_five accordion; do
         echo "set title '$(echo $scene | tr _ ' ')'; set key bottom left samplen 1.5 font ',10'"
         [ $scene = slab_in_five ] || echo "set key off; set ylabel ''"
-        echo "plot \$${scene}_BDF1 using 1:2 with linespoints ls 2 title 'BDF1, dt 33 to 2 ms', \$${scene}_BDF2 using 1:2 with linespoints ls 1 title 'BDF2', \$${scene}_BDF2__lumped using 1:2 with linespoints ls 8 title 'BDF2, lumped mass', \$${scene}_midpoint using 1:2 with linespoints ls 5 lw 1 dt 2 pt 12 title 'midpoint', \$${scene}_midpoint__2_Newton using 1:2 with linespoints ls 5 title 'midpoint, 2 Newton', \$${scene}_VNA__BDF2 using 1:2 with linespoints ls 3 title 'VNA, BDF2', $(deletion_of $scene) \$${scene}_CG_tolerance using 1:2 with linespoints ls 6 title 'BDF1, 8 ms: CG 1e-1 to 1e-6', \$${scene}_Newton_iterations using 1:2 with linespoints ls 7 title 'BDF1, 8 ms: Newton 1 to 16'"
+        affine="\$affine_BDF2 using 1:2 with linespoints ls 1 pt 4 title 'affine copies, BDF2; a reference of their own', \$affine_midpoint using 1:2 with linespoints ls 5 pt 4 title 'affine copies, midpoint',"
+        [ $scene = slab_in_five ] || affine=
+        echo "plot $affine \$${scene}_BDF1 using 1:2 with linespoints ls 2 title 'BDF1, dt 33 to 2 ms', \$${scene}_BDF2 using 1:2 with linespoints ls 1 title 'BDF2', \$${scene}_BDF2__lumped using 1:2 with linespoints ls 8 title 'BDF2, lumped mass', \$${scene}_midpoint using 1:2 with linespoints ls 5 lw 1 dt 2 pt 12 title 'midpoint', \$${scene}_midpoint__2_Newton using 1:2 with linespoints ls 5 title 'midpoint, 2 Newton', \$${scene}_VNA__BDF2 using 1:2 with linespoints ls 3 title 'VNA, BDF2', $(deletion_of $scene) \$${scene}_CG_tolerance using 1:2 with linespoints ls 6 title 'BDF1, 8 ms: CG 1e-1 to 1e-6', \$${scene}_Newton_iterations using 1:2 with linespoints ls 7 title 'BDF1, 8 ms: Newton 1 to 16'"
     done
     echo 'unset multiplot'
 }
@@ -300,7 +303,7 @@ space_rows() {
 space() {
     echo 'set terminal svg size 1180,520 font "sans,12" background "white"'
     echo "set output '$charts/space.svg'"
-    for method in cut VNA deletion conforming; do
+    for method in cut affine VNA deletion conforming; do
         space_rows slices_$method slices $method '$5, 100 * $7 / $8'
         space_rows accordion_$method accordion $method '$6, $9'
     done
@@ -310,7 +313,7 @@ set multiplot layout 1,2 title "The same cuts at rest under refinement, beside c
 set logscale xy; set grid back lc rgb "#dddddd"
 set title "five slices in one layer of elements, refined"; set xlabel "thickness of a slice, elements"; set ylabel "drop of its end, % of the converged"
 set xrange [0.05:*]; set yrange [0.1:300]; set key bottom right samplen 1.5
-plot \$slices_conforming using 1:2 with points ls 5 title "conforming mesh of each slice", \$slices_cut using 1:2 with points ls 1 title "cut, gxfem (and RXFEM's space)", \$slices_VNA using 1:2 with points ls 3 title "VNA", \$slices_deletion using 1:2 with points ls 9 title "element deletion, where any is left", 100 with lines ls 7 lw 1 notitle
+plot \$slices_conforming using 1:2 with points ls 5 title "conforming mesh of each slice", \$slices_cut using 1:2 with points ls 1 title "cut, gxfem (and RXFEM's space)", \$slices_affine using 1:2 with points ls 2 title "the same, affine copies below one element", \$slices_VNA using 1:2 with points ls 3 title "VNA", \$slices_deletion using 1:2 with points ls 9 title "element deletion, where any is left", 100 with lines ls 7 lw 1 notitle
 set title "accordion, 6 folds"; set xlabel "unknowns"; set ylabel "error of the drop of its bottom"; set xrange [*:*]; set yrange [1e-2:2]; set format x "10^{%L}"; set key bottom left
 plot \$accordion_conforming using 1:2 with linespoints ls 5 title "conforming mesh", \$accordion_cut using 1:2 with linespoints ls 1 title "cut, gxfem (and RXFEM's space)", \$accordion_VNA using 1:2 with linespoints ls 3 title "VNA", \$accordion_deletion using 1:2 with linespoints ls 9 title "element deletion"
 unset multiplot

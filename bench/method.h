@@ -108,6 +108,7 @@ static inline void *method_body_create(const replay *scene) {
     desc.young = scene->young;
     desc.poisson = scene->poisson;
     desc.density = scene->density;
+    desc.affine_below = scene->affine_below;
     desc.clock = seconds;
     method_must(gx_body_create(&desc, &m->body, NULL), "body");
     method_must(gx_body_hold(m->body, scene->regions, scene->region_count, NULL), "hold");

@@ -26,7 +26,8 @@ typedef struct replay {
     uint32_t *elements;                          /* element_count x 4 */
     gx_region *regions;
     replay_cut *cuts;
-    double sever_below; /* see gx_cut_desc; not in files: 0 */
+    double sever_below;  /* see gx_cut_desc; not in files: 0 */
+    double affine_below; /* see gx_body_desc; not in files: 0 */
     /* of sheets, for methods that need solids, m; not in files: REPLAY_THICKNESS */
     double thickness;
     const char *name; /* of the file */

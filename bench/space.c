@@ -14,6 +14,8 @@
 
    Methods, by refinement (cubes along the edge of a cube):
        cut         the mesh, cut: the library's copies and integrals. RXFEM has the same space
+       affine      the same with affine copies where material is thinner than an element (gx_body_desc.affine_below);
+                   the accordion's folds are thicker, so it has none
        VNA         the same copies, each part with all of its element's mass and stiffness (vna.h)
        deletion    elements that cuts meet are removed (parts.h)
        conforming  nodes lie on the cuts. slices: cubes through the thickness of each; accordion: cubes of the mesh,
@@ -38,9 +40,20 @@
 #include "parts.h"
 #include "vna.h"
 
-enum { PIECES = 5, FOLDS = 6, LEVELS = 2 * FOLDS + 2, CORNERS = 4, CUT = 0, VNA, DELETION, CONFORMING, METHODS };
+enum {
+    PIECES = 5,
+    FOLDS = 6,
+    LEVELS = 2 * FOLDS + 2,
+    CORNERS = 4,
+    CUT = 0,
+    AFFINE,
+    VNA,
+    DELETION,
+    CONFORMING,
+    METHODS
+};
 
-static const char *const method_names[METHODS] = {"cut", "VNA", "deletion", "conforming"};
+static const char *const method_names[METHODS] = {"cut", "affine", "VNA", "deletion", "conforming"};
 static const double density = 1000, young = 3e7, poisson = 0.4, gravity = -9.81;
 
 /* ---- what is compared ---- */
@@ -152,7 +165,8 @@ static gxio_mesh make_layers(const strip *s, uint32_t refinement) {
     return mesh;
 }
 
-static gx_body *make_body(const gxio_mesh *mesh, const gx_region *held) {
+/* affine_below: as gx_body_desc */
+static gx_body *make_body(const gxio_mesh *mesh, const gx_region *held, double affine_below) {
     gx_material material;
     gx_body_desc desc;
     gx_body *body;
@@ -168,6 +182,7 @@ static gx_body *make_body(const gxio_mesh *mesh, const gx_region *held) {
     desc.element_count = mesh->element_count;
     desc.materials = &material;
     desc.material_count = 1;
+    desc.affine_below = affine_below;
     expect(gx_body_create(&desc, &body, NULL) == GX_OK, "no body");
     expect(gx_body_hold(body, held, 1, NULL) == GX_OK, "nothing is held");
     return body;
@@ -200,7 +215,10 @@ static void cut_body(gx_body *body, const strip *s) {
 
 /* ---- rest ---- */
 
-/* Displacements at rest; copies on no element are held. unknowns: of the others */
+/* The first of a copy's hidden vectors, or GXS_NOT_AFFINE */
+static uint32_t hidden_of(const gxs_model *m, uint32_t copy) { return m->affine ? m->affine[copy] : GXS_NOT_AFFINE; }
+
+/* Displacements at rest, with hidden vectors; copies on no element are held. unknowns: of the others */
 static double *find_rest(const gxs_model *given, size_t *unknowns) {
     const size_t count = given->copy_count;
     double *displacement = (double *)memory(3 * count, sizeof(double)),
@@ -210,7 +228,11 @@ static double *find_rest(const gxs_model *given, size_t *unknowns) {
     gxs_step_desc step;
     gxs_solver *solver;
     size_t i;
-    for (i = 0; i < 4 * model.element_count; i++) used[model.elements[i / 4].copy[i % 4]] = 1;
+    for (i = 0; i < 4 * model.element_count; i++) {
+        const uint32_t copy = model.elements[i / 4].copy[i % 4], hidden = hidden_of(&model, copy);
+        used[copy] = 1;
+        if (hidden != GXS_NOT_AFFINE) memset(used + hidden, 1, 3);
+    }
     for (*unknowns = i = 0; i < count; i++) {
         held[i] = !used[i] || given->held[i];
         *unknowns += 3 * (size_t)used[i];
@@ -240,6 +262,21 @@ static void locate(const gxs_model *m, const gxs_element *e, const double x[3], 
         for (at[i] = i == 0, k = 0; k < 3; k++) at[i] += e->gradient[i][k] * (x[k] - origin[k]);
 }
 
+/* The displacement along z of a material point of an element, at its barycentric coordinates */
+static double displacement_at(const gxs_model *m, const gxs_element *e, const double x[3], const double at[4],
+                              const double *displacement) {
+    double sum = 0;
+    int i, k;
+    for (i = 0; i < 4; i++) {
+        const uint32_t copy = e->copy[i], hidden = hidden_of(m, copy);
+        sum += at[i] * displacement[3 * (size_t)copy + 2];
+        for (k = 0; k < 3 && hidden != GXS_NOT_AFFINE; k++)
+            sum += at[i] * (x[k] - m->positions[3 * (size_t)copy + (size_t)k]) / m->affine_length *
+                   displacement[3 * ((size_t)hidden + (size_t)k) + 2];
+    }
+    return sum;
+}
+
 /* z of the part's centre of mass */
 static double height(const gxs_model *m, const gxs_element *e) {
     static const int row[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
@@ -258,18 +295,17 @@ static double height(const gxs_model *m, const gxs_element *e) {
 static double drop_of(const strip *s, size_t piece, const gxs_model *m, const gxs_element *pieces,
                       const double *displacement) {
     double best = -HUGE_VAL, drop = 0;
-    size_t i, k;
+    size_t i;
     for (i = 0; i < m->element_count; i++) {
         const gxs_element *e = &m->elements[i];
         const double z = height(m, &pieces[i]);
-        double at[4], least, sum = 0;
+        double at[4], least;
         if (z < s->low[piece] || z > s->high[piece]) continue;
         locate(m, e, s->point[piece], at);
         least = fmin(fmin(at[0], at[1]), fmin(at[2], at[3]));
         if (least <= best) continue;
-        for (k = 0; k < 4; k++) sum += at[k] * displacement[3 * (size_t)e->copy[k] + 2];
         best = least;
-        drop = -sum;
+        drop = -displacement_at(m, e, s->point[piece], at, displacement);
     }
     return drop;
 }
@@ -298,9 +334,10 @@ static double thickness_of(const strip *s, size_t piece) {
     return s->piece_count > 1 ? s->high[piece] - s->low[piece] : s->cuts[1].z - s->cuts[0].z;
 }
 
-/* Rows of one method in the cut body; uncut: the same mesh */
-static void run_method(const strip *s, const parts_body *p, const gxs_model *uncut, int method, uint32_t refinement) {
-    gxs_model m = method == DELETION ? *uncut : p->model;
+/* Rows of one method in the cut body; affine: with affine copies; uncut: the same mesh */
+static void run_method(const strip *s, const parts_body *p, const gxs_model *affine, const gxs_model *uncut, int method,
+                       uint32_t refinement) {
+    gxs_model m = method == AFFINE ? *affine : method == DELETION ? *uncut : p->model;
     gxs_element *elements = (gxs_element *)memory(m.element_count, sizeof *elements);
     const gxs_element *pieces = method == VNA ? m.elements : elements;
     double *rest = NULL;
@@ -325,8 +362,8 @@ static void run_cut(const strip *s, uint32_t refinement) {
     size_t n[3], i;
     double size[3];
     gxio_mesh mesh;
-    gx_body *body, *uncut_body;
-    gxs_model uncut;
+    gx_body *body, *affine_body, *uncut_body;
+    gxs_model affine, uncut;
     parts_body p;
     int method;
     for (i = 0; i < 3; i++) {
@@ -334,14 +371,18 @@ static void run_cut(const strip *s, uint32_t refinement) {
         size[i] = s->cubes[i];
     }
     mesh = make_grid(n, size);
-    body = make_body(&mesh, &s->held);
-    uncut_body = make_body(&mesh, &s->held);
+    body = make_body(&mesh, &s->held, 0);
+    affine_body = make_body(&mesh, &s->held, 1);
+    uncut_body = make_body(&mesh, &s->held, 0);
     cut_body(body, s);
+    cut_body(affine_body, s);
     p = parts_create(body);
+    expect(gx_body_model(affine_body, &affine, NULL) == GX_OK, "no model");
     expect(gx_body_model(uncut_body, &uncut, NULL) == GX_OK, "no model");
-    for (method = CUT; method < CONFORMING; method++) run_method(s, &p, &uncut, method, refinement);
+    for (method = CUT; method < CONFORMING; method++) run_method(s, &p, &affine, &uncut, method, refinement);
     parts_free(&p);
     gx_body_destroy(body);
+    gx_body_destroy(affine_body);
     gx_body_destroy(uncut_body);
     gxio_mesh_release(&mesh);
 }
@@ -363,7 +404,7 @@ static double run_conforming(const strip *s, size_t piece, uint32_t refinement, 
         for (i = 0; i < mesh.node_count; i++) mesh.positions[3 * i + 2] += s->low[piece];
     } else
         mesh = make_layers(s, refinement);
-    body = make_body(&mesh, &s->held);
+    body = make_body(&mesh, &s->held, 0);
     if (s->piece_count == 1) cut_body(body, s);
     expect(gx_body_model(body, &model, NULL) == GX_OK, "no model");
     rest = find_rest(&model, unknowns);

@@ -22,6 +22,11 @@
                    thin cut moves as the largest part of the other body with its centre in it; if there is none, it
                    stays in place
 
+   The scene "slab_in_five affine" is the same with affine copies (gx_body_desc.affine_below), which bend as they
+   should: another space with a reference of its own, over a fifth of the time, with as many iterations of Newton's
+   method as the library chooses where the series does not say 1. The row "linear elements" is how far their reference,
+   of all the other rows, is off. In scenes whose parts are thicker than an element nothing is affine.
+
    Columns: series, and the value that was varied in it; dt; steps; ms_per_step: the mean, with evaluations of
    points; ms_per_second: of simulated time; error; of_exact: the difference from the same steps with thin cuts and
    exact integrals; integrals_ms: to integrate all divided elements, once; points: of the mean divided part; note:
@@ -39,6 +44,7 @@
 
 static const double longest = 0.033; /* s, of a step */
 static double duration = 0.33;       /* s, of a run */
+static int small;
 
 /* A way of taking steps; zero: the library's own */
 typedef struct knobs {
@@ -70,6 +76,7 @@ typedef struct setting {
     method_body *body;
     parts_body parts;
     mover own;
+    double *start; /* own.start */
     /* copy_count x 3: at the end; exact: by the steps with which integrals and thicknesses are compared */
     double *reference, *exact;
 } setting;
@@ -245,13 +252,20 @@ static method_body *cut_body(const replay *scene, method_times *times) {
 }
 
 static void setting_make(setting *s, const char *name, const replay *scene) {
+    const double *displacement;
     method_times times;
+    gx_view view;
     memset(s, 0, sizeof *s);
     s->name = name;
     s->scene = whole_blades(scene);
     s->edge = mean_edge(scene);
     s->body = cut_body(&s->scene, &times);
-    method_library_look(s->body, &s->own.model, &s->own.start);
+    method_library_look(s->body, &s->own.model, &displacement);
+    method_must(gx_body_view(s->body->body, &view, NULL), "view");
+    s->start = (double *)calloc(3 * s->own.model.copy_count, sizeof(double)); /* hidden vectors begin with 0 */
+    method_must(s->start ? GX_OK : GX_ERROR_MEMORY, "start");
+    memcpy(s->start, displacement, 3 * view.copy_count * sizeof(double));
+    s->own.start = s->start;
     s->own.integrals_ms = 1e3 * times.integrals;
     s->parts = parts_create(s->body->body);
     s->reference = (double *)method_memory(NULL, 3 * s->own.model.copy_count, sizeof(double));
@@ -262,6 +276,7 @@ static void setting_free(setting *s) {
     parts_free(&s->parts);
     method_body_destroy(s->body);
     free(s->scene.cuts);
+    free(s->start);
     free(s->reference);
     free(s->exact);
 }
@@ -430,13 +445,19 @@ static double evaluate_ms(const setting *s, const gxs_element *elements, const s
 
 /* ---- variations: steps and solvers ---- */
 
-static void find_reference(setting *s) {
-    knobs k = knobs_of("reference", "BDF2", longest / 32, GXS_MIDPOINT);
-    double ms;
-    progress_draw("stepping", done, total, "reference");
+/* By the midpoint rule with so many steps in the longest one */
+static knobs reference_knobs(const char *series, const char *value, int steps) {
+    knobs k = knobs_of(series, value, longest / steps, GXS_MIDPOINT);
     k.newton = 30;
     k.newton_tolerance = 1e-8;
     k.cg_tolerance = 1e-4;
+    return k;
+}
+
+static void find_reference(setting *s) {
+    knobs k = reference_knobs("reference", "BDF2", 32);
+    double ms;
+    progress_draw("stepping", done, total, "reference");
     method_must(run(s, &s->own, &k, s->reference, &ms), "reference");
     k.integrator = GXS_BDF2;
     k.dt = longest / 64;
@@ -458,10 +479,11 @@ static const sweep sweeps[SWEEPS] = {
     {"BDF1; lumped", GXS_BDF1, 1, 1}, {"BDF2; lumped", GXS_BDF2, 1, 1}};
 /* clang-format on */
 
-static void turn_steps(const setting *s, const mover *m, const sweep *w) {
+/* The first so many of the step lengths */
+static void turn_steps(const setting *s, const mover *m, const sweep *w, int steps) {
     static const int divisors[STEPS] = {1, 2, 4, 8, 16};
     int i;
-    for (i = 0; i < STEPS; i++) {
+    for (i = 0; i < steps; i++) {
         char text[32];
         knobs k = knobs_of(w->series, text, longest / divisors[i], w->integrator);
         snprintf(text, sizeof text, "dt/%d", divisors[i]);
@@ -508,7 +530,7 @@ static void turn_duplication(const setting *s) {
     vna_replicate(m.model.elements, m.model.element_count, &s->scene.density, replicas);
     m.model.elements = replicas;
     m.integrals_ms = 0;
-    turn_steps(s, &m, &w);
+    turn_steps(s, &m, &w, STEPS);
     free(replicas);
 }
 
@@ -523,7 +545,7 @@ static void turn_deletion(const setting *s) {
     m.model.elements = elements;
     m.corners = match(s, &m.model, NULL);
     if (m.model.element_count > 0)
-        turn_steps(s, &m, &w);
+        turn_steps(s, &m, &w, STEPS);
     else {
         const knobs k = knobs_of(w.series, "", longest, w.integrator);
         print_row(s, &m, &k, -1, 0, -1, "no element is left");
@@ -532,6 +554,81 @@ static void turn_deletion(const setting *s) {
     free(m.corners);
     free(elements);
     method_body_destroy(uncut);
+}
+
+/* ---- affine copies ---- */
+
+/* Adds the displacement of an element's centre of mass, times a factor. */
+static void add_center(const gxs_model *m, const gxs_element *e, const double *u, double factor, double sum[3]) {
+    static const int row[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
+    double at[4], mass = 0, x[3] = {0, 0, 0};
+    size_t i, j, k;
+    for (i = 0; i < 4; i++) {
+        for (at[i] = 0, j = 0; j < 4; j++) at[i] += e->mass[row[i][j]];
+        mass += at[i];
+    }
+    for (i = 0; i < 4; i++)
+        for (k = 0; k < 3; k++) x[k] += at[i] / mass * m->positions[3 * (size_t)e->copy[i] + k];
+    for (i = 0; i < 4; i++) {
+        const uint32_t hidden = m->affine ? m->affine[e->copy[i]] : GXS_NOT_AFFINE;
+        const double share = factor * at[i] / mass;
+        for (k = 0; k < 3; k++) sum[k] += share * u[3 * (size_t)e->copy[i] + k];
+        for (j = 0; j < 3 && hidden != GXS_NOT_AFFINE; j++)
+            for (k = 0; k < 3; k++)
+                sum[k] += share * (x[j] - m->positions[3 * (size_t)e->copy[i] + j]) / m->affine_length *
+                          u[3 * ((size_t)hidden + j) + k];
+    }
+}
+
+/* The distance of the linear elements' motion from the reference, over the parts' centres, as a share of the
+   reference's motion. Copies have the same numbers. */
+static double error_of_linear(const setting *s, const double *linear) {
+    gxs_model stiff = s->own.model;
+    double off = 0, moved = 0;
+    size_t i, k;
+    stiff.affine = NULL;
+    for (i = 0; i < s->own.model.element_count; i++) {
+        const gxs_element *e = &s->own.model.elements[i];
+        double motion[3] = {0, 0, 0}, miss[3] = {0, 0, 0};
+        add_center(&s->own.model, e, s->reference, 1, motion);
+        add_center(&s->own.model, e, s->start, -1, motion);
+        add_center(&s->own.model, e, s->reference, -1, miss);
+        add_center(&stiff, e, linear, 1, miss);
+        for (k = 0; k < 3; k++) {
+            moved += e->weight * motion[k] * motion[k];
+            off += e->weight * miss[k] * miss[k];
+        }
+    }
+    return sqrt(off / moved);
+}
+
+/* The same scene in the space with affine copies, if there are any */
+static void turn_affine(const setting *linear, const replay *scene) {
+    enum { BENT_SWEEPS = 3, BENT_STEPS = 3 };
+    static const sweep bent_sweeps[BENT_SWEEPS] = {
+        {"BDF2", GXS_BDF2, 0, 0}, {"midpoint", GXS_MIDPOINT, 0, 0}, {"BDF2; 1 Newton", GXS_BDF2, 1, 0}};
+    const double whole = duration;
+    replay bent = *scene;
+    setting s;
+    char name[48];
+    int i;
+    bent.affine_below = 1;
+    snprintf(name, sizeof name, "%s affine", linear->name);
+    setting_make(&s, name, &bent);
+    if (s.own.model.affine) {
+        const knobs k = reference_knobs("linear elements", "reference", 8);
+        double *u = (double *)method_memory(NULL, 3 * linear->own.model.copy_count, sizeof(double)), ms;
+        duration /= small ? 1 : 5;
+        method_must(run(&s, &s.own, &k, s.reference, &ms), "reference");
+        method_must(run(linear, &linear->own, &k, u, &ms), "linear elements");
+        print_row(&s, &s.own, &k, ms, error_of_linear(&s, u), -1, "");
+        for (i = 0; i < BENT_SWEEPS; i++) turn_steps(&s, &s.own, &bent_sweeps[i], BENT_STEPS);
+        print_front(name);
+        free(u);
+        duration = whole;
+    }
+    kept_count = 0;
+    setting_free(&s);
 }
 
 /* ---- integrals ---- */
@@ -720,8 +817,8 @@ static size_t rows_of_scene(void) {
 }
 
 int main(int argc, char **argv) {
-    const int small = argc > 2 && strcmp(argv[2], "--small") == 0;
     int i, j;
+    small = argc > 2 && strcmp(argv[2], "--small") == 0;
     if (argc < 3 + small) {
         fprintf(stderr, "usage: %s FILE [--small] SCENE=TRACE...\n", argv[0]);
         return 2;
@@ -736,7 +833,7 @@ int main(int argc, char **argv) {
         setting s;
         setting_make(&s, name, &scene);
         find_reference(&s);
-        for (j = 0; j < SWEEPS; j++) turn_steps(&s, &s.own, &sweeps[j]);
+        for (j = 0; j < SWEEPS; j++) turn_steps(&s, &s.own, &sweeps[j], STEPS);
         turn_duplication(&s);
         turn_deletion(&s);
         turn_solver(&s);
@@ -745,6 +842,7 @@ int main(int argc, char **argv) {
         print_front(name);
         print_integrals();
         kept_count = 0;
+        turn_affine(&s, &scene);
         setting_free(&s);
         replay_free(&scene);
     }

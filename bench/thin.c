@@ -21,7 +21,9 @@
        balance     CG iterations to 1e-2 of a slice in the plate, without inertia
        motion      the same of slices of 61 x 11 cubes in steps of slab_in_five; most: iterations of the aim
        cost        a slice of 8 x 2 cubes, t = .2, to an error: milliseconds of one static solve to 1e-3 by refinement
-       newton      slab_in_five's slices flung: error of the motion by Newton iterations; see its table */
+       newton      slab_in_five's slices flung: error of the motion by Newton iterations; see its table
+       product     of the Hessian with a vector, as conjugate gradients have it: ns for each element with affine copies;
+                   linear: for each of the same elements without; most: the ratio, of which aim is the aim */
 #define _POSIX_C_SOURCE 200809L
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
@@ -634,14 +636,55 @@ static void run_newton(void) {
     free(at);
 }
 
+/* ns that a product takes for each element of a slice, the least of several short runs; affine: as
+ * gx_body_desc.affine_below */
+static double time_product(const slice *s, double affine, size_t *elements) {
+    enum { RUNS = 25, MOST = 20000 };
+    probe p = cut_probe(s, 0.3, affine, 1);
+    const gx_step_desc step = make_step(&p, 0.005, 1);
+    gxsp_system *system;
+    gxs_model model;
+    double least = HUGE_VAL;
+    size_t i, k, count;
+    int run;
+    expect(gx_body_step(p.body, &step, NULL, NULL) == GX_OK, "a step fails");
+    expect(gx_body_model(p.body, &model, NULL) == GX_OK, "no model");
+    *elements = model.element_count;
+    count = MOST / model.element_count + 1;
+    system = p.body->solver->system;
+    for (i = 0; i < system->model.n; i++)
+        for (k = 0; k < 3; k++) system->vectors.search[i][k] = (float)((i * 7 + k * 3) % 11) - 5;
+    for (run = 0; run < RUNS; run++) {
+        const double start = seconds(NULL);
+        for (i = 0; i < count; i++) gxsp_product(system, 1e4, system->vectors.search, system->vectors.product);
+        least = fmin(least, 1e9 * (seconds(NULL) - start) / (double)(count * model.element_count));
+    }
+    free_probe(&p);
+    return least;
+}
+
+static void run_product(void) {
+    static const double widths[2] = {4, 40};
+    int i;
+    for (i = 0; i < (small ? 1 : 2); i++) {
+        const slice s = make_slice(15 * (i + 1), widths[i], 0.37, 0.2);
+        size_t elements;
+        const double bent = time_product(&s, 1, &elements), linear = time_product(&s, 0, &elements);
+        char name[32];
+        progress_draw("thin", done++, total, "product");
+        snprintf(name, sizeof name, "%lu", (unsigned long)elements);
+        row("product", name, s.thickness, 0.3, bent, bent / linear, linear, 8);
+    }
+}
+
 int main(int argc, char **argv) {
     const char *path = csv_arguments(argc, argv, &small);
     const char *only = getenv("THIN");
     static void (*const series[])(void) = {run_placements, run_slices, run_meshes, run_frequency, run_large,
-                                           run_balance,    run_motion, run_costs,  run_newton};
+                                           run_balance,    run_motion, run_costs,  run_newton,    run_product};
     size_t i;
     csv_open(argv[0], path, "series,case,thickness,poisson,value,most,linear,aim");
-    total = small ? 64 : 90;
+    total = small ? 65 : 92;
     fprintf(stderr, "%-10s %-22s %7s %6s %12s %12s %12s %10s\n", "series", "case", "t", "nu", "value", "most", "linear",
             "aim");
     for (i = 0; i < sizeof series / sizeof series[0]; i++)

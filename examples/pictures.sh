@@ -1,12 +1,15 @@
 #!/bin/sh
 # Renders frames of the scenes with f3d, on a virtual display where there is none.
-# usage: sh examples/pictures.sh PROGRAMS DIRECTORY
+# usage: sh examples/pictures.sh PROGRAMS DIRECTORY [SCENE]...
 #     PROGRAMS  directory of the built scenes; frames go into PROGRAMS/pictures
 #     DIRECTORY of SCENE.png
+#     SCENE     these only
 set -u
-[ $# -eq 2 ] || { echo "usage: $0 PROGRAMS DIRECTORY" >&2; exit 2; }
+[ $# -ge 2 ] || { echo "usage: $0 PROGRAMS DIRECTORY [SCENE]..." >&2; exit 2; }
 programs=$1
 directory=$2
+shift 2
+only=$*
 mkdir -p "$directory" "$programs/pictures" || exit 2
 colors=0,0.85,0.37,0.30,0.2,0.95,0.65,0.30,0.4,0.98,0.88,0.55,0.6,0.60,0.80,0.65,0.8,0.35,0.62,0.75,1,0.36,0.40,0.65
 failed=0
@@ -17,6 +20,7 @@ display() { if [ -n "${DISPLAY:-}" ]; then "$@"; else xvfb-run -a "$@"; fi; }
 # picture SCENE EVERY FRAME ARRAY AZIMUTH ELEVATION [OPTION]...: the FRAME-th of each EVERY-th frame, coloured by `fragment`, by `material` or, outer
 # surface and faces of cuts, by `surface`; OPTIONs of f3d, without any z is up
 picture() {
+    case " ${only:-$1} " in *" $1 "*) ;; *) return ;; esac
     echo "$1"
     rm -rf "$programs/pictures/$1"
     scene=$1 every=$2 frame=$3 array=$4 azimuth=$5 elevation=$6
@@ -48,6 +52,7 @@ picture surgeon 20 0010 surface 0 0 --up=+Z --camera-position=-0.25,-0.62,0.4 --
 picture organ 5 0022 material 0 0 --up=+Z --camera-position=-0.25,-0.55,0.3 --camera-focal-point=-0.01,-0.04,0.0 --camera-view-angle=21
 picture trainer 15 0024 material 0 0 --up=+Z --camera-position=-0.2,-0.55,0.25 --camera-focal-point=0.0,-0.05,-0.02 --camera-view-angle=26
 picture pile 60 0010 fragment 30 20
+picture ribbon 8 0009 surface 0 0 --up=+Z --camera-position=0.35,-1.5,-0.1 --camera-focal-point=0.03,-0.06,-0.17 --camera-view-angle=31
 picture lips 15 0003 surface 20 12
 picture sausage 60 0008 fragment 30 15
 exit $failed

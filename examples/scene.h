@@ -129,6 +129,7 @@ typedef struct scene {
     gx_surface *cuts; /* cut_count, every surface so far; they and their arrays owned */
     size_t cut_count;
     size_t first_copies, cut_triangles;
+    unsigned long first_unknowns;
     scene_memory memory;
     double frame_seconds[SCENE_PHASES], frame_cut, sum[SCENE_PHASES], sum_frames, worst_frame;
     uint32_t clock_calls; /* in this step */
@@ -379,6 +380,17 @@ static inline void scene_keep(scene *s, int (*wanted)(const void *user, const do
     scene_drop_nodes(s);
 }
 
+static inline size_t scene_affine_copies(const scene *s) {
+    size_t c, count = 0;
+    for (c = 0; s->view.copy_affine && c < s->view.copy_count; c++) count += s->view.copy_affine[c];
+    return count;
+}
+
+/* Displacements and, of affine copies, motions */
+static inline unsigned long scene_unknowns(const scene *s) {
+    return 3 * (unsigned long)s->view.copy_count + 9 * (unsigned long)scene_affine_copies(s);
+}
+
 static inline void scene_create(scene *s) {
     gx_body_desc *desc = &s->body_desc;
     desc->allocator.allocate = scene_allocate;
@@ -389,6 +401,7 @@ static inline void scene_create(scene *s) {
     scene_must(s, gx_body_create(desc, &s->body, &s->failure), "body");
     scene_must(s, gx_body_view(s->body, &s->view, &s->failure), "view");
     s->first_copies = s->view.copy_count;
+    s->first_unknowns = scene_unknowns(s);
     s->volume = s->view.volume;
 }
 
@@ -906,8 +919,7 @@ static inline void scene_draw_bar(scene *s) {
     if (s->quiet || !SCENE_STDERR_IS_TERMINAL) return;
     fprintf(stderr, "\r%s [", s->desc.name);
     for (i = 0; i < width; i++) fputc(i < filled ? '#' : '.', stderr);
-    fprintf(stderr, "] %lu/%lu, %lu unknowns ", (unsigned long)s->frame, (unsigned long)s->frames,
-            3 * (unsigned long)s->view.copy_count);
+    fprintf(stderr, "] %lu/%lu, %lu unknowns ", (unsigned long)s->frame, (unsigned long)s->frames, scene_unknowns(s));
     fflush(stderr);
     s->bar = 1;
 }
@@ -1107,16 +1119,31 @@ static inline double scene_largest_eigenvalue(const double m[6]) {
     return mean + 2.0 * p * cos(acos(fmax(-1.0, fmin(1.0, determinant / (2.0 * p * p * p)))) / 3.0);
 }
 
-/* The largest principal stretch of an element */
-static inline double scene_element_stretch(const gxs_element *e, const double *displacement) {
-    double f[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, c[6];
-    int corner, i, j;
-    for (corner = 1; corner < 4; corner++)
+/* The largest principal stretch of an element, at its centre of mass */
+static inline double scene_element_stretch(const scene *s, const gxs_element *e) {
+    static const int row[4][4] = {{0, 1, 2, 3}, {1, 4, 5, 6}, {2, 5, 7, 8}, {3, 6, 8, 9}};
+    double f[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, c[6], at[4], mass = 0.0, x[3] = {0, 0, 0};
+    int corner, i, j, k;
+    for (corner = 0; corner < 4; corner++) {
+        const double *place = s->mesh.positions + 3 * (size_t)s->view.copy_node[e->copy[corner]];
+        for (k = 0, at[corner] = 0.0; k < 4; k++) at[corner] += e->mass[row[corner][k]];
+        for (i = 0; i < 3; i++) x[i] += at[corner] * place[i];
+        mass += at[corner];
+    }
+    for (corner = 0; corner < 4; corner++) {
+        const size_t copy = e->copy[corner];
+        const double *place = s->mesh.positions + 3 * (size_t)s->view.copy_node[copy];
+        double u[3];
+        memcpy(u, s->view.displacement + 3 * copy, sizeof u);
+        for (k = 0; k < 3 && s->view.copy_affine && s->view.copy_affine[copy]; k++)
+            for (i = 0; i < 3; i++) { /* the columns of A */
+                const double a = s->view.affine[9 * copy + 3 * (size_t)k + (size_t)i];
+                u[i] += a * (x[k] / mass - place[k]);
+                f[i][k] += at[corner] / mass * a;
+            }
         for (i = 0; i < 3; i++)
-            for (j = 0; j < 3; j++)
-                f[i][j] += (displacement[3 * (size_t)e->copy[corner] + (size_t)i] -
-                            displacement[3 * (size_t)e->copy[0] + (size_t)i]) *
-                           e->gradient[corner][j];
+            for (j = 0; j < 3; j++) f[i][j] += u[i] * e->gradient[corner][j];
+    }
     for (i = 0, corner = 0; i < 3; i++)
         for (j = i; j < 3; j++) c[corner++] = f[0][i] * f[0][j] + f[1][i] * f[1][j] + f[2][i] * f[2][j];
     return sqrt(scene_largest_eigenvalue(c));
@@ -1128,8 +1155,7 @@ static inline double scene_largest_stretch(scene *s) {
     double largest = 0.0;
     size_t e;
     scene_must(s, gx_body_model(s->body, &model, &s->failure), "model");
-    for (e = 0; e < model.element_count; e++)
-        largest = fmax(largest, scene_element_stretch(&model.elements[e], s->view.displacement));
+    for (e = 0; e < model.element_count; e++) largest = fmax(largest, scene_element_stretch(s, &model.elements[e]));
     return largest;
 }
 
@@ -1351,8 +1377,6 @@ static inline size_t scene_least_copies(scene *s) {
 
 /* -------------------------------------------------------------------------------------------- >>report */
 
-static inline unsigned long scene_unknowns(const scene *s) { return 3 * (unsigned long)s->view.copy_count; }
-
 /* A line of what one sees: "name: value (what it should be)", and whether it holds. */
 static inline void scene_check(scene *s, int ok, const char *format, ...) {
     va_list arguments;
@@ -1392,8 +1416,12 @@ static inline void scene_check_whole(scene *s) {
 static inline void scene_check_body(scene *s) {
     const size_t least = scene_least_copies(s);
     scene_check(s, s->view.copy_count == least, "unknowns: %lu, %+.1f %% of the uncut body's %lu (least possible: %lu)",
-                scene_unknowns(s), 100.0 * ((double)s->view.copy_count / (double)s->first_copies - 1.0),
+                3 * (unsigned long)s->view.copy_count,
+                100.0 * ((double)s->view.copy_count / (double)s->first_copies - 1.0),
                 3 * (unsigned long)s->first_copies, 3 * (unsigned long)least);
+    if (scene_affine_copies(s) > 0)
+        scene_say(s, "affine copies: %lu of %lu, with 9 unknowns more each", (unsigned long)scene_affine_copies(s),
+                  (unsigned long)s->view.copy_count);
     scene_check_whole(s);
 }
 
@@ -1426,7 +1454,7 @@ static inline void scene_print_times(scene *s) {
 static inline void scene_print_row(const scene *s, FILE *stream) {
     int i;
     fprintf(stream, "| %s | %lu | %lu | %lu | %lu |", s->desc.name, (unsigned long)s->mesh.element_count,
-            3 * (unsigned long)s->first_copies, scene_unknowns(s), (unsigned long)s->cut_triangles);
+            s->first_unknowns, scene_unknowns(s), (unsigned long)s->cut_triangles);
     for (i = 0; i < SCENE_PHASES; i++) fprintf(stream, " %.3g |", scene_phase_ms(s, i));
     fprintf(stream, " %.3g | %.3g | %.0f | %.3g | %lu of %lu |\n", scene_mean_ms(s), scene_ms(s->worst_frame),
             s->frame / s->sum_frames, 1e-6 * (double)s->memory.peak, (unsigned long)(s->checks - s->wrong),

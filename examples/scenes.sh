@@ -39,9 +39,11 @@ done
 chart() {
     mkdir -p "$(dirname -- "$1")"
     { echo 'set terminal svg size 760,460 font "sans,12" background "white"'; echo "set output '$1'"
-      echo 'set logscale x 2; set yrange [0:100]; set grid; set key left top'
+      echo 'set logscale x 2; set yrange [0:105]; set grid; set key below'
       echo 'set xlabel "thickness of the slice, elements"; set ylabel "drop of the end, % of beam theory"'
-      awk -F, '{ key = $1 ", " $2
+      awk -F, 'BEGIN { name["cut"] = "cut, linear elements"; name["affine"] = "cut, affine copies"
+                       name["conforming"] = "slice meshed on its own, linear elements" }
+               { key = $1 ": " name[$2]
                  if (!(key in rows)) order[++n] = key
                  rows[key] = rows[key] ($2 == "conforming" ? $5 : $4 * $5) " " 100 * $7 "\n" }
           END { for (i = 1; i <= n; i++) printf("$k%d << EOD\n%sEOD\n", i, rows[order[i]])
@@ -68,8 +70,8 @@ gallery() {
     echo "# Scenes"
     echo
     echo "The scenes of the two papers, by their parameters where they give them, and two in which a blade cuts while the body moves"
-    echo "(\`overhang\`, \`surgeon\`), two whose body is made of closed surfaces (\`organ\`, \`trainer\`), and three that end in contact"
-    echo "(\`pile\`, \`lips\`, \`sausage\`); one file each in \`examples/\`."
+    echo "(\`overhang\`, \`surgeon\`), two whose body is made of closed surfaces (\`organ\`, \`trainer\`), three that end in contact"
+    echo "(\`pile\`, \`lips\`, \`sausage\`), and one whose ribbon is thinner than an element (\`ribbon\`); one file each in \`examples/\`."
     echo
     gallery "$@"
     echo
@@ -102,7 +104,7 @@ gallery() {
     echo "forces: of the step; skin: view, skin, positions and normals of its vertices; peak: the body's memory, by its allocator."
     if [ -s "$work/csv" ] && command -v gnuplot >/dev/null && chart "$directory/charts/locking.svg" <"$work/csv"; then
         echo
-        echo "![how far slices bend, beside beam theory, by their thickness in elements](charts/locking.svg)"
+        echo "![how far slices bend, linear elements and affine copies, beside beam theory, by their thickness in elements](charts/locking.svg)"
         echo
         echo "Locking of linear elements: cut slices (the slab's own mesh, refined) and slices meshed on their own bend alike far too little"
         echo "while they are thin beside an element. Integration is not the cause: the checks below compare the same"
