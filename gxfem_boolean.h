@@ -3137,20 +3137,29 @@ GXFEM_API void gxb_complex_begin(gxb_complex *cx) {
 
 GXFEM_API void gxb_complex_commit(gxb_complex *cx) { gxbp_set_marks(cx); }
 
-/* A cache of planes and sides in pairs of doubles (see >>barycentric). The remainder of an index is its place. */
-enum { GXBP_PAIR_NORMALS = 32, GXBP_PAIR_SIDES = 256 };
+/* A cache of planes, sides and points of three planes in pairs of doubles (see >>barycentric). The remainder of an
+ * index is its place. */
+enum { GXBP_PAIR_NORMALS = 32, GXBP_PAIR_SIDES = 256, GXBP_PAIR_POINTS = 32 };
 typedef struct gxbp_pair {
     double high, low, error;
 } gxbp_pair; /* a number within error of high + low */
+/* The point of three planes: the first point of the first plane, less away / weight */
+typedef struct gxbp_pair_point {
+    uint32_t def[3];
+    gxbp_pair away[3], weight;
+} gxbp_pair_point;
 typedef struct gxbp_pairs {
     /* GXB_NONE: empty */
     uint32_t plane[GXBP_PAIR_NORMALS], side_plane[GXBP_PAIR_SIDES], side_point[GXBP_PAIR_SIDES];
     gxbp_pair normal[GXBP_PAIR_NORMALS][3], side[GXBP_PAIR_SIDES];
+    gxbp_pair_point point[GXBP_PAIR_POINTS];
 } gxbp_pairs;
 
 static void gxbp_forget_pairs(gxb_complex *cx) {
+    uint32_t i;
     memset(cx->pairs->plane, 0xff, sizeof cx->pairs->plane);
     memset(cx->pairs->side_plane, 0xff, sizeof cx->pairs->side_plane);
+    for (i = 0; i < GXBP_PAIR_POINTS; i++) cx->pairs->point[i].def[0] = GXB_NONE;
 }
 
 #define GXBP_LAST_STAMP 0x3fffffffu /* of an edge */
@@ -4288,26 +4297,40 @@ static int gxbp_pair_line_side(gxb_complex *cx, const uint32_t def[3], uint32_t 
     return sign == 0 ? GXBP_UNKNOWN : sign;
 }
 
-/* The same of a point x of three planes. With a point o of the plane in question, n_i.(x - o) is minus o's side s_i of
-   each of the three, so n.(x - o) = -(sum of s_i n.(n_j x n_k)) / n_0.(n_1 x n_2). */
-static int gxbp_pair_planes_side(gxb_complex *cx, const uint32_t def[3], uint32_t plane) {
-    const uint32_t o = cx->store.planes[plane].def[0];
-    gxbp_pair n[4][3], cross[3], dot, value = gxbp_pair_sum(0, 0), weight = value;
+/* A point x of three planes. o, the first point of the first plane, has sides 0, s_1 and s_2 of the three. n_i.(x - o)
+   is minus its side of each, so o - x = (s_1 n_2 x n_0 + s_2 n_0 x n_1) / n_1.(n_2 x n_0). */
+static const gxbp_pair_point *gxbp_pair_point_of(gxb_complex *cx, const uint32_t def[3]) {
+    gxbp_pair_point *p = &cx->pairs->point[(def[0] * 7 + def[1] * 31 + def[2]) % GXBP_PAIR_POINTS];
+    const uint32_t o = cx->store.planes[def[0]].def[0];
+    gxbp_pair n[3][3], cross[2][3], side[2];
     uint32_t i, k;
-    int sign;
-    for (i = 0; i < 4; i++) memcpy(n[i], gxbp_pair_normal(cx, i < 3 ? def[i] : plane), sizeof n[i]);
-    for (i = 0; i < 3; i++) {
-        const gxbp_pair *a = n[(i + 1) % 3], *b = n[(i + 2) % 3], side = gxbp_pair_side(cx, o, def[i]);
+    if (memcmp(p->def, def, sizeof p->def) == 0) return p;
+    memcpy(p->def, def, sizeof p->def);
+    for (i = 0; i < 3; i++) memcpy(n[i], gxbp_pair_normal(cx, def[i]), sizeof n[i]);
+    for (i = 0; i < 2; i++) {
+        const gxbp_pair *a = n[(i + 2) % 3], *b = n[i];
+        side[i] = gxbp_pair_side(cx, o, def[i + 1]);
         for (k = 0; k < 3; k++) {
             const uint32_t x = (k + 1) % 3, y = (k + 2) % 3;
-            cross[k] = gxbp_pair_det2(&a[x], &b[y], &a[y], &b[x]);
+            cross[i][k] = gxbp_pair_det2(&a[x], &b[y], &a[y], &b[x]);
         }
-        if (i == 0) weight = gxbp_pair_dot(n[0], cross);
-        dot = gxbp_pair_dot(n[3], cross);
-        dot = gxbp_pair_mul(&side, &dot);
-        value = gxbp_pair_add(&value, &dot, 1);
     }
-    sign = -gxbp_filter_sign(value.high, value.error) * gxbp_filter_sign(weight.high, weight.error);
+    for (k = 0; k < 3; k++) {
+        const gxbp_pair s = gxbp_pair_mul(&side[0], &cross[0][k]), t = gxbp_pair_mul(&side[1], &cross[1][k]);
+        p->away[k] = gxbp_pair_add(&s, &t, 1);
+    }
+    p->weight = gxbp_pair_dot(n[1], cross[0]);
+    return p;
+}
+
+/* The same side of a point x of three planes: n.(x - base) is o's side less n.(o - x). The corners of one triangle have
+   one o. */
+static int gxbp_pair_planes_side(gxb_complex *cx, const uint32_t def[3], uint32_t plane) {
+    const gxbp_pair_point *p = gxbp_pair_point_of(cx, def);
+    const gxbp_pair side = gxbp_pair_side(cx, cx->store.planes[def[0]].def[0], plane);
+    const gxbp_pair s = gxbp_pair_mul(&p->weight, &side), t = gxbp_pair_dot(gxbp_pair_normal(cx, plane), p->away),
+                    value = gxbp_pair_add(&s, &t, -1);
+    const int sign = gxbp_filter_sign(value.high, value.error) * gxbp_filter_sign(p->weight.high, p->weight.error);
     return sign == 0 ? GXBP_UNKNOWN : sign;
 }
 
