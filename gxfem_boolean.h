@@ -11922,18 +11922,25 @@ static uint32_t gxbp_walk_chain(gxbp_division *d, uint32_t i, uint32_t *n) {
     return forward ? chain->to : chain->from;
 }
 
-/* Each polygon has an edge on the rim. Walks the rim for those that are not done yet. */
+/* Each polygon has an edge on the rim. Walks the rim for those that are not done yet. A chain is between two polygons,
+   and so there is room for each of them, unless it crosses another one: then the surface is not simple. */
 static GXBP_APART void gxbp_fill_polygons(gxb_boolean *b, gxbp_division *d) {
-    uint32_t done = 0, start, i, n;
+    uint32_t done = 0, walked, start, i, n;
     for (start = 0; start < d->rim_count; start++) {
         if (done >> start & 1) continue;
         i = start;
-        n = 0;
+        n = walked = 0;
         do {
             done |= 1u << i;
             d->polygon[n++] = d->rim[i];
             i = i + 1 == d->rim_count ? 0 : i + 1;
-            if (d->chain_at[i] != GXB_NONE) i = gxbp_walk_chain(d, i, &n);
+            if (d->chain_at[i] == GXB_NONE) continue;
+            if (walked >> d->chain_at[i] & 1) {
+                gxbp_stop(b, GX_ERROR_OVERLAP);
+                return;
+            }
+            walked |= 1u << d->chain_at[i];
+            i = gxbp_walk_chain(d, i, &n);
         } while (i != start);
         gxbp_fill_polygon(b, d, n);
     }
