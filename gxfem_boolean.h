@@ -10682,7 +10682,7 @@ static uint32_t gxbp_order_by_filter(const gxbp_ordering *o, uint32_t edge, uint
         if (b->points.vertices[*point].same != *point) return 0;
         for (j = n; j > 0 && to[j - 1] != *point; j--) {
             sign = gxbp_compare_by_filter(b, *point, to[j - 1], axis) * direction;
-            ++*filter_calls;
+            (*filter_calls)++;
             if (sign >= 0) break;
         }
         if (sign == 0) return 0;
@@ -13228,34 +13228,34 @@ static size_t gxbp_begin_floods(gxb_boolean *b, gxbp_flood *floods, uint32_t *qu
 }
 
 /* left: of each part, whether one of its subtriangles needs a state */
-typedef struct gxbp_looking {
+typedef struct gxbp_openings {
     const gxb_boolean *b;
     uint32_t *left;
-} gxbp_looking;
+} gxbp_openings;
 
 static int gxbp_needs_state(const gxb_boolean *b, uint32_t f) {
     return b->mesh.subtriangles[f].state == GXB_NONE && gxbp_is_surface(b, f);
 }
 
-static void gxbp_look_for_stateless(void *context, size_t part) {
-    const gxbp_looking *looking = (const gxbp_looking *)context;
-    const gxb_boolean *b = looking->b;
+static void gxbp_find_open(void *context, size_t part) {
+    const gxbp_openings *openings = (const gxbp_openings *)context;
+    const gxb_boolean *b = openings->b;
     uint32_t end, i = gxbp_part_first(part, b->mesh.subtriangle_count - b->mesh.stated, &end);
     while (i < end && !gxbp_needs_state(b, b->mesh.stated + i)) i++;
-    looking->left[part] = i < end;
+    openings->left[part] = i < end;
 }
 
-/* Have the floods reached all? 0 also without memory, which costs a search only. */
+/* Have the floods reached all? 0 also if there is no memory. */
 static GXBP_COLD int gxbp_is_all_flooded(gxb_boolean *b) {
     const size_t parts = gxbp_part_count(b->mesh.subtriangle_count - b->mesh.stated);
-    gxbp_looking looking;
+    gxbp_openings openings;
     uint32_t left = 0;
     size_t part;
-    looking.b = b;
-    looking.left = (uint32_t *)gxbp_borrow(b, parts * sizeof *looking.left);
-    if (looking.left == NULL) return 0;
-    gxbp_each_part(b, parts, gxbp_look_for_stateless, &looking);
-    for (part = 0; part < parts; part++) left += looking.left[part];
+    openings.b = b;
+    openings.left = (uint32_t *)gxbp_borrow(b, parts * sizeof *openings.left);
+    if (openings.left == NULL) return 0;
+    gxbp_each_part(b, parts, gxbp_find_open, &openings);
+    for (part = 0; part < parts; part++) left += openings.left[part];
     return left == 0;
 }
 
