@@ -10134,20 +10134,41 @@ static int gxbp_touches_by_corner(const int side[3]) {
     return side[0] + side[1] + side[2] == 2 || side[0] + side[1] + side[2] == -2;
 }
 
+/* A triangle's corners are in its plane. Others that share them need not ask. */
+static void gxbp_note_corners(gxb_boolean *b, uint32_t s, int slot) {
+    const uint32_t stamp = b->in.sources[s].plane + 1;
+    int k;
+    for (k = 0; k < 3; k++) {
+        gxb_cpoint *p = &b->store.points[b->in.sources[s].point[k]];
+        p->stamp[slot] = stamp;
+        p->sign[slot] = 0;
+    }
+}
+
+static int gxbp_share_one_corner(gxb_boolean *b, uint32_t s, uint32_t t) {
+    int k, common = 0;
+    for (k = 0; k < 3; k++) common += gxbp_is_corner(b, t, b->in.sources[s].point[k]);
+    return common == 1;
+}
+
 static void gxbp_meet(gxb_boolean *b, uint32_t s, uint32_t t) {
     int side_t[3], side_s[3];
     gxbp_meeting m;
-    int neighbours, flat, k, common = 0;
+    const int together = b->in.sources[s].operand == b->in.sources[t].operand;
+    int neighbours, flat;
     if (b->error != GX_OK || !gxbp_need_plane(b, s)) return;
+    if (together) gxbp_note_corners(b, s, 0);
     gxbp_sides(b, t, b->in.sources[s].plane, 0, side_t);
     if (gxbp_all_on_one_side(side_t) || !gxbp_need_plane(b, t)) return;
     flat = side_t[0] == 0 && side_t[1] == 0 && side_t[2] == 0;
-    neighbours = b->in.sources[s].operand == b->in.sources[t].operand && gxbp_are_neighbours(b, s, t);
+    neighbours = together && gxbp_are_neighbours(b, s, t);
     if (neighbours && !flat) return;
     if (flat) {
         if (!neighbours || !gxbp_flat_apart(b, s, t)) gxbp_meet_in_plane(b, s, t);
         return;
     }
+    if (gxbp_touches_by_corner(side_t) && gxbp_share_one_corner(b, s, t)) return;
+    if (together) gxbp_note_corners(b, t, 1);
     gxbp_sides(b, s, b->in.sources[t].plane, 1, side_s);
     if (gxbp_all_on_one_side(side_s)) return;
     m.count = m.left = 0;
@@ -10158,8 +10179,7 @@ static void gxbp_meet(gxb_boolean *b, uint32_t s, uint32_t t) {
         gxbp_orient_pairs(b, q, p, sign);
         gxbp_meet_across(b, s, t, side_s, side_t, sign, &m);
     } else {
-        for (k = 0; k < 3; k++) common += gxbp_is_corner(b, t, b->in.sources[s].point[k]);
-        if (common == 1 && (gxbp_touches_by_corner(side_s) || gxbp_touches_by_corner(side_t))) return;
+        if (gxbp_touches_by_corner(side_s) && gxbp_share_one_corner(b, s, t)) return;
         gxbp_meet_one_way(b, s, t, side_s, &m);
         gxbp_meet_one_way(b, t, s, side_t, &m);
     }
