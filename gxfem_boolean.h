@@ -3137,20 +3137,29 @@ GXFEM_API void gxb_complex_begin(gxb_complex *cx) {
 
 GXFEM_API void gxb_complex_commit(gxb_complex *cx) { gxbp_set_marks(cx); }
 
-/* A cache of planes and sides in pairs of doubles (see >>barycentric). The remainder of an index is its place. */
-enum { GXBP_PAIR_NORMALS = 32, GXBP_PAIR_SIDES = 256 };
+/* A cache of planes, sides and points of three planes in pairs of doubles (see >>barycentric). The remainder of an
+ * index is its place. */
+enum { GXBP_PAIR_NORMALS = 32, GXBP_PAIR_SIDES = 256, GXBP_PAIR_POINTS = 32 };
 typedef struct gxbp_pair {
     double high, low, error;
 } gxbp_pair; /* a number within error of high + low */
+/* The point of three planes: the first point of the first plane, less away / weight */
+typedef struct gxbp_pair_point {
+    uint32_t def[3];
+    gxbp_pair away[3], weight;
+} gxbp_pair_point;
 typedef struct gxbp_pairs {
     /* GXB_NONE: empty */
     uint32_t plane[GXBP_PAIR_NORMALS], side_plane[GXBP_PAIR_SIDES], side_point[GXBP_PAIR_SIDES];
     gxbp_pair normal[GXBP_PAIR_NORMALS][3], side[GXBP_PAIR_SIDES];
+    gxbp_pair_point point[GXBP_PAIR_POINTS];
 } gxbp_pairs;
 
 static void gxbp_forget_pairs(gxb_complex *cx) {
+    uint32_t i;
     memset(cx->pairs->plane, 0xff, sizeof cx->pairs->plane);
     memset(cx->pairs->side_plane, 0xff, sizeof cx->pairs->side_plane);
+    for (i = 0; i < GXBP_PAIR_POINTS; i++) cx->pairs->point[i].def[0] = GXB_NONE;
 }
 
 #define GXBP_LAST_STAMP 0x3fffffffu /* of an edge */
@@ -4288,26 +4297,40 @@ static int gxbp_pair_line_side(gxb_complex *cx, const uint32_t def[3], uint32_t 
     return sign == 0 ? GXBP_UNKNOWN : sign;
 }
 
-/* The same of a point x of three planes. With a point o of the plane in question, n_i.(x - o) is minus o's side s_i of
-   each of the three, so n.(x - o) = -(sum of s_i n.(n_j x n_k)) / n_0.(n_1 x n_2). */
-static int gxbp_pair_planes_side(gxb_complex *cx, const uint32_t def[3], uint32_t plane) {
-    const uint32_t o = cx->store.planes[plane].def[0];
-    gxbp_pair n[4][3], cross[3], dot, value = gxbp_pair_sum(0, 0), weight = value;
+/* A point x of three planes. o, the first point of the first plane, has sides 0, s_1 and s_2 of the three. n_i.(x - o)
+   is minus its side of each, so o - x = (s_1 n_2 x n_0 + s_2 n_0 x n_1) / n_1.(n_2 x n_0). */
+static const gxbp_pair_point *gxbp_pair_point_of(gxb_complex *cx, const uint32_t def[3]) {
+    gxbp_pair_point *p = &cx->pairs->point[(def[0] * 7 + def[1] * 31 + def[2]) % GXBP_PAIR_POINTS];
+    const uint32_t o = cx->store.planes[def[0]].def[0];
+    gxbp_pair n[3][3], cross[2][3], side[2];
     uint32_t i, k;
-    int sign;
-    for (i = 0; i < 4; i++) memcpy(n[i], gxbp_pair_normal(cx, i < 3 ? def[i] : plane), sizeof n[i]);
-    for (i = 0; i < 3; i++) {
-        const gxbp_pair *a = n[(i + 1) % 3], *b = n[(i + 2) % 3], side = gxbp_pair_side(cx, o, def[i]);
+    if (memcmp(p->def, def, sizeof p->def) == 0) return p;
+    memcpy(p->def, def, sizeof p->def);
+    for (i = 0; i < 3; i++) memcpy(n[i], gxbp_pair_normal(cx, def[i]), sizeof n[i]);
+    for (i = 0; i < 2; i++) {
+        const gxbp_pair *a = n[(i + 2) % 3], *b = n[i];
+        side[i] = gxbp_pair_side(cx, o, def[i + 1]);
         for (k = 0; k < 3; k++) {
             const uint32_t x = (k + 1) % 3, y = (k + 2) % 3;
-            cross[k] = gxbp_pair_det2(&a[x], &b[y], &a[y], &b[x]);
+            cross[i][k] = gxbp_pair_det2(&a[x], &b[y], &a[y], &b[x]);
         }
-        if (i == 0) weight = gxbp_pair_dot(n[0], cross);
-        dot = gxbp_pair_dot(n[3], cross);
-        dot = gxbp_pair_mul(&side, &dot);
-        value = gxbp_pair_add(&value, &dot, 1);
     }
-    sign = -gxbp_filter_sign(value.high, value.error) * gxbp_filter_sign(weight.high, weight.error);
+    for (k = 0; k < 3; k++) {
+        const gxbp_pair s = gxbp_pair_mul(&side[0], &cross[0][k]), t = gxbp_pair_mul(&side[1], &cross[1][k]);
+        p->away[k] = gxbp_pair_add(&s, &t, 1);
+    }
+    p->weight = gxbp_pair_dot(n[1], cross[0]);
+    return p;
+}
+
+/* The same side of a point x of three planes: n.(x - base) is o's side less n.(o - x). The corners of one triangle have
+   one o. */
+static int gxbp_pair_planes_side(gxb_complex *cx, const uint32_t def[3], uint32_t plane) {
+    const gxbp_pair_point *p = gxbp_pair_point_of(cx, def);
+    const gxbp_pair side = gxbp_pair_side(cx, cx->store.planes[def[0]].def[0], plane);
+    const gxbp_pair s = gxbp_pair_mul(&p->weight, &side), t = gxbp_pair_dot(gxbp_pair_normal(cx, plane), p->away),
+                    value = gxbp_pair_add(&s, &t, -1);
+    const int sign = gxbp_filter_sign(value.high, value.error) * gxbp_filter_sign(p->weight.high, p->weight.error);
     return sign == 0 ? GXBP_UNKNOWN : sign;
 }
 
@@ -9368,17 +9391,17 @@ static inline void gxbp_make_whole(gxb_boolean *b, uint32_t s, uint32_t first) {
     t->subtriangle = first;
 }
 
-/* A triangle without area is nobody's neighbour. */
-static void gxbp_forget_degenerate(gxb_boolean *b, uint32_t first) {
-    uint32_t s, k;
-    for (s = first; s < b->in.source_count; s++) {
-        if (!(b->in.sources[s].flags & GXBP_DEGENERATE)) continue;
+/* A triangle without area is nobody's neighbour: those of a part. */
+static GXBP_RARE void gxbp_forget_degenerate(gxb_boolean *b, gxbp_operand *o, size_t part) {
+    uint32_t end, i = gxbp_part_first(part, o->source_count, &end), k;
+    for (; i < end; i++) {
+        gxbp_source *t = &b->in.sources[o->source + i];
+        if (!(t->flags & GXBP_DEGENERATE)) continue;
         for (k = 0; k < 3; k++) {
-            const uint32_t h = b->in.sources[s].twin[k];
-            if (h != GXB_NONE) b->in.sources[h / 3].twin[h % 3] = GXB_NONE;
-            b->in.sources[s].twin[k] = GXB_NONE;
+            if (t->twin[k] != GXB_NONE) b->in.sources[t->twin[k] / 3].twin[t->twin[k] % 3] = GXB_NONE;
+            t->twin[k] = GXB_NONE;
         }
-        b->in.operands[b->in.operand_count - 1].simple = 0;
+        o->simple = 0;
     }
 }
 
@@ -9419,19 +9442,20 @@ typedef struct gxbp_reading {
     gxbp_operand *added;
     uint64_t *keys;                 /* two for each triangle, to sort them */
     uint32_t *points, *local;       /* of each vertex, see gxbp_read_points */
-    uint32_t *joined, *twin, *room; /* 3 words for each triangle; the same; gxbp_twin_room */
+    uint32_t *joined, *twin, *room; /* 3 words for each triangle; the same; gxbp_twin_room. Once twins are found,
+                                       joined has the number of triangles without area in each part */
     uint32_t subtriangle, open;     /* the first subtriangle; a half-edge at the rim, or GXB_NONE */
     int distinct;
     gx_result result;
     size_t bad;
 } gxbp_reading;
 
-/* The sources of one part, each with one subtriangle */
+/* The sources of one part, each with one subtriangle. Twins have been found, so joined is free. */
 static void gxbp_fill_sources(void *context, size_t part) {
     const gxbp_reading *r = (const gxbp_reading *)context;
     gxb_boolean *b = r->b;
     const gxb_cpoint *x = b->store.points;
-    uint32_t end, h = gxbp_part_first(part, r->added->source_count, &end), k;
+    uint32_t end, h = gxbp_part_first(part, r->added->source_count, &end), degenerate = 0, k;
     for (; h < end; h++) {
         const uint32_t s = r->added->source + h;
         gxbp_source *t = &b->in.sources[s];
@@ -9445,8 +9469,10 @@ static void gxbp_fill_sources(void *context, size_t part) {
         t->flags = gxbp_has_area(x[t->point[0]].ball.x, x[t->point[1]].ball.x, x[t->point[2]].ball.x)
                      ? 0
                      : (uint32_t)GXBP_DEGENERATE;
+        degenerate += t->flags != 0;
         gxbp_make_whole(b, s, r->subtriangle + h);
     }
+    r->joined[part] = degenerate;
 }
 
 static void gxbp_pair_half_edges(gxbp_reading *r, const uint32_t *triangles) {
@@ -9454,16 +9480,18 @@ static void gxbp_pair_half_edges(gxbp_reading *r, const uint32_t *triangles) {
     gxbp_find_twins(triangles, o->triangle_count, (uint32_t)o->vertex_count, r->twin, &r->open, r->room);
 }
 
-/* Stages that need nothing of each other: points; half-edges, as if no two vertices were at one place; the tree. What
-   is wrong with a vertex is found by the first one. */
+/* Stages that need nothing of each other: the tree, which takes as long as the others together, so it comes first;
+   points; half-edges, as if no two vertices were at one place. What is wrong with a vertex is found by the second. */
+enum { GXBP_READ_TREE, GXBP_READ_POINTS, GXBP_READ_HALF_EDGES, GXBP_READ_STAGES };
+
 static void gxbp_read_stage(void *context, size_t stage) {
     gxbp_reading *r = (gxbp_reading *)context;
-    if (stage == 0)
-        r->result = gxbp_read_points(r->b, r->given.operand, r->points, r->local, &r->distinct, &r->bad);
-    else if (stage == 1)
-        gxbp_pair_half_edges(r, r->given.operand->triangles);
-    else
+    if (stage == GXBP_READ_TREE)
         gxbp_fill_tree(r->b, r->added, &r->given, r->keys);
+    else if (stage == GXBP_READ_POINTS)
+        r->result = gxbp_read_points(r->b, r->given.operand, r->points, r->local, &r->distinct, &r->bad);
+    else
+        gxbp_pair_half_edges(r, r->given.operand->triangles);
 }
 
 static GXBP_APART gx_result gxbp_read_triangles(gxbp_reading *r) {
@@ -9473,15 +9501,15 @@ static GXBP_APART gx_result gxbp_read_triangles(gxbp_reading *r) {
     const int together = gxbp_has_jobs(b) && parts > 1;
     size_t h;
     if (together)
-        gxbp_each_part(b, 3, gxbp_read_stage, r);
+        gxbp_each_part(b, GXBP_READ_STAGES, gxbp_read_stage, r);
     else
-        gxbp_read_stage(r, 0);
+        gxbp_read_stage(r, GXBP_READ_POINTS);
     if (r->result != GX_OK) return r->result;
     if (!r->distinct) {
         for (h = 0; h < 3 * o->triangle_count; h++) r->joined[h] = r->local[o->triangles[h]];
         gxbp_pair_half_edges(r, r->joined);
     } else if (!together)
-        gxbp_read_stage(r, 1);
+        gxbp_read_stage(r, GXBP_READ_HALF_EDGES);
     if (r->open != GXB_NONE && o->operation != GXB_SPLIT) {
         r->bad = r->open / 3;
         return GX_ERROR_NOT_CLOSED;
@@ -9492,7 +9520,9 @@ static GXBP_APART gx_result gxbp_read_triangles(gxbp_reading *r) {
         gxbp_each_part(b, parts, gxbp_fill_sources, r);
     b->in.source_count += (uint32_t)o->triangle_count;
     b->mesh.subtriangle_count += (uint32_t)o->triangle_count;
-    if (!together) gxbp_read_stage(r, 2);
+    for (h = 0; h < parts; h++)
+        if (r->joined[h] > 0) gxbp_forget_degenerate(b, r->added, h);
+    if (!together) gxbp_read_stage(r, GXBP_READ_TREE);
     return GX_OK;
 }
 
@@ -9532,7 +9562,8 @@ static gx_result gxbp_operand_room(gxb_boolean *b, const gxb_operand *o) {
     if (!GXBP_ROOM(b, in.operands, in.operand, 1) || !gxbp_operand_box_room(b) ||
         !GXBP_ROOM(b, in.sources, in.source, sources) || !GXBP_ROOM(b, in.bounds, in.bound, leaves) ||
         !GXBP_ROOM(b, mesh.subtriangles, mesh.subtriangle, subtriangles) ||
-        !GXBP_ROOM(b, points.vertices, points.vertex, points) || !gxbp_table_room(b, (uint32_t)o->vertex_count))
+        !GXBP_ROOM(b, points.vertices, points.vertex, points) ||
+        !gxbp_table_room(b, (uint32_t)gxbp_presize(b, o->vertex_count, 1)))
         return b->error;
     return GXBP_RESERVE(&b->store.allocator, &b->store, points, point, points);
 }
@@ -9559,7 +9590,6 @@ static GXBP_APART gx_result gxbp_append_operand(gxb_boolean *b, const gxb_operan
         return result;
     }
     gxbp_list_operand_box(b, b->in.operand_count++);
-    gxbp_forget_degenerate(b, added->source);
     return GX_OK;
 }
 
@@ -10104,20 +10134,41 @@ static int gxbp_touches_by_corner(const int side[3]) {
     return side[0] + side[1] + side[2] == 2 || side[0] + side[1] + side[2] == -2;
 }
 
+/* A triangle's corners are in its plane. Others that share them need not ask. */
+static void gxbp_note_corners(gxb_boolean *b, uint32_t s, int slot) {
+    const uint32_t stamp = b->in.sources[s].plane + 1;
+    int k;
+    for (k = 0; k < 3; k++) {
+        gxb_cpoint *p = &b->store.points[b->in.sources[s].point[k]];
+        p->stamp[slot] = stamp;
+        p->sign[slot] = 0;
+    }
+}
+
+static int gxbp_share_one_corner(gxb_boolean *b, uint32_t s, uint32_t t) {
+    int k, common = 0;
+    for (k = 0; k < 3; k++) common += gxbp_is_corner(b, t, b->in.sources[s].point[k]);
+    return common == 1;
+}
+
 static void gxbp_meet(gxb_boolean *b, uint32_t s, uint32_t t) {
     int side_t[3], side_s[3];
     gxbp_meeting m;
-    int neighbours, flat, k, common = 0;
+    const int together = b->in.sources[s].operand == b->in.sources[t].operand;
+    int neighbours, flat;
     if (b->error != GX_OK || !gxbp_need_plane(b, s)) return;
+    if (together) gxbp_note_corners(b, s, 0);
     gxbp_sides(b, t, b->in.sources[s].plane, 0, side_t);
     if (gxbp_all_on_one_side(side_t) || !gxbp_need_plane(b, t)) return;
     flat = side_t[0] == 0 && side_t[1] == 0 && side_t[2] == 0;
-    neighbours = b->in.sources[s].operand == b->in.sources[t].operand && gxbp_are_neighbours(b, s, t);
+    neighbours = together && gxbp_are_neighbours(b, s, t);
     if (neighbours && !flat) return;
     if (flat) {
         if (!neighbours || !gxbp_flat_apart(b, s, t)) gxbp_meet_in_plane(b, s, t);
         return;
     }
+    if (gxbp_touches_by_corner(side_t) && gxbp_share_one_corner(b, s, t)) return;
+    if (together) gxbp_note_corners(b, t, 1);
     gxbp_sides(b, s, b->in.sources[t].plane, 1, side_s);
     if (gxbp_all_on_one_side(side_s)) return;
     m.count = m.left = 0;
@@ -10128,8 +10179,7 @@ static void gxbp_meet(gxb_boolean *b, uint32_t s, uint32_t t) {
         gxbp_orient_pairs(b, q, p, sign);
         gxbp_meet_across(b, s, t, side_s, side_t, sign, &m);
     } else {
-        for (k = 0; k < 3; k++) common += gxbp_is_corner(b, t, b->in.sources[s].point[k]);
-        if (common == 1 && (gxbp_touches_by_corner(side_s) || gxbp_touches_by_corner(side_t))) return;
+        if (gxbp_touches_by_corner(side_s) && gxbp_share_one_corner(b, s, t)) return;
         gxbp_meet_one_way(b, s, t, side_s, &m);
         gxbp_meet_one_way(b, t, s, side_t, &m);
     }
@@ -10483,12 +10533,16 @@ static GXBP_COLD int gxbp_compare_on_line(gxb_boolean *b, uint32_t p, uint32_t q
     return side == end_side ? -along : side == 0 ? 0 : along;
 }
 
-/* Sign of p[axis] - q[axis] */
-static int gxbp_compare_points(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t axis) {
+/* Sign of p[axis] - q[axis]; 0: the filter leaves it open */
+static int gxbp_compare_by_filter(const gxb_boolean *b, uint32_t p, uint32_t q, uint32_t axis) {
     const gxb_ball *a = &b->store.points[p].ball, *c = &b->store.points[q].ball;
     const double difference = gxbp_fence(a->x[axis] - c->x[axis]);
-    const double bound = 2 * (a->error + c->error) + 2 * GXBP_U * gxbp_abs(difference) + GXBP_TINY;
-    const int sign = gxbp_filter_sign(difference, bound);
+    return gxbp_filter_sign(difference, 2 * (a->error + c->error) + 2 * GXBP_U * gxbp_abs(difference) + GXBP_TINY);
+}
+
+/* Sign of p[axis] - q[axis] */
+static int gxbp_compare_points(gxb_boolean *b, uint32_t p, uint32_t q, uint32_t axis) {
+    const int sign = gxbp_compare_by_filter(b, p, q, axis);
     gxbp_vec s, t;
     const gxb_num *x, *y;
     GXB_NUM(r);
@@ -10616,10 +10670,84 @@ static GXBP_COLD void gxbp_order_few_edges(gxb_boolean *b) {
     }
 }
 
+/* --- the same on the host's threads: new edges of which filters tell the order --- */
+
+/* points: of all hits, those of edge i from first[i] on. base: where these begin in b->crossings.edge_points.
+ * filter_calls: of each part */
+typedef struct gxbp_ordering {
+    gxb_boolean *b;
+    const uint32_t *first, *points;
+    uint32_t base, *filter_calls;
+} gxbp_ordering;
+enum { GXBP_EDGE_HITS = 32 }; /* the most of an edge that a task puts in order by insertion */
+
+/* Is an edge in order? Its points are then where a task has put them. */
+static int gxbp_is_ordered(const gxbp_ordering *o, uint32_t edge) {
+    const gxbp_surface_edge *e = &o->b->crossings.edges[edge];
+    return e->count > 0 && e->first == o->base + o->first[edge];
+}
+
+/* Puts points in order where they will stand, each once. Returns how many there are; 0: a filter leaves one open, or a
+   point has another name. */
+static uint32_t gxbp_order_by_filter(const gxbp_ordering *o, uint32_t edge, uint32_t *to, uint32_t *filter_calls) {
+    const gxb_boolean *b = o->b;
+    const uint32_t h = b->crossings.edges[edge].half_edge, *point = o->points + o->first[edge],
+                   *end = o->points + o->first[edge + 1];
+    uint32_t axis, n = 0, j;
+    int direction;
+    axis =
+        gxbp_edge_axis(gxbp_corner_of(b, h / 3, (int)(h % 3)), gxbp_corner_of(b, h / 3, (int)(h + 1) % 3), &direction);
+    for (; point < end; point++) {
+        int sign = 1;
+        if (b->points.vertices[*point].same != *point) return 0;
+        for (j = n; j > 0 && to[j - 1] != *point; j--) {
+            sign = gxbp_compare_by_filter(b, *point, to[j - 1], axis) * direction;
+            (*filter_calls)++;
+            if (sign >= 0) break;
+        }
+        if (sign == 0) return 0;
+        if (j > 0 && to[j - 1] == *point) continue;
+        memmove(to + j + 1, to + j, (n++ - j) * sizeof *to);
+        to[j] = *point;
+    }
+    return n;
+}
+
+static void gxbp_order_part(void *context, size_t part) {
+    const gxbp_ordering *o = (const gxbp_ordering *)context;
+    gxb_boolean *b = o->b;
+    uint32_t end, i = gxbp_part_first(part, b->crossings.edge_count, &end), filter_calls = 0;
+    for (; i < end; i++) {
+        gxbp_surface_edge *e = &b->crossings.edges[i];
+        const uint32_t hits = o->first[i + 1] - o->first[i];
+        uint32_t n;
+        if (hits == 0 || hits > (uint32_t)GXBP_EDGE_HITS || e->count > 0) continue;
+        n = gxbp_order_by_filter(o, i, b->crossings.edge_points + o->base + o->first[i], &filter_calls);
+        if (n == 0) continue;
+        e->first = o->base + o->first[i];
+        e->count = n;
+    }
+    o->filter_calls[part] = filter_calls;
+}
+
+/* Orders what tasks can, in room for all hits. */
+static GXBP_COLD void gxbp_order_by_parts(gxb_boolean *b, gxbp_ordering *o) {
+    const size_t parts = gxbp_part_count(b->crossings.edge_count);
+    size_t part;
+    o->filter_calls = (uint32_t *)gxbp_borrow(b, parts * sizeof *o->filter_calls);
+    if (o->filter_calls == NULL || !GXBP_ROOM(b, crossings.edge_points, crossings.edge_point, b->crossings.hit_count))
+        return;
+    gxbp_each_part(b, parts, gxbp_order_part, o);
+    for (part = 0; part < parts; part++) b->store.filter_calls += o->filter_calls[part];
+    b->crossings.edge_point_count += b->crossings.hit_count;
+}
+
 /* A counting sort of the hits by edge, then each edge's points. */
 static GXBP_APART void gxbp_order_all_edges(gxb_boolean *b) {
     const size_t words = (size_t)b->crossings.edge_count + 1 + b->crossings.hit_count;
+    const int together = gxbp_has_jobs(b) && gxbp_part_count(b->crossings.edge_count) > 1;
     uint32_t *first, *points, i;
+    gxbp_ordering ordering;
     first = (uint32_t *)gxbp_allocate(&b->store.allocator, words * sizeof *first);
     if (first == NULL) {
         gxbp_stop(b, GX_ERROR_MEMORY);
@@ -10630,10 +10758,17 @@ static GXBP_APART void gxbp_order_all_edges(gxb_boolean *b) {
     for (i = 0; i < b->crossings.hit_count; i++) first[b->crossings.hits[i].edge]++;
     for (i = 1; i <= b->crossings.edge_count; i++) first[i] += first[i - 1];
     for (i = b->crossings.hit_count; i-- > 0;) points[--first[b->crossings.hits[i].edge]] = b->crossings.hits[i].point;
+    ordering.b = b;
+    ordering.first = first;
+    ordering.points = points;
+    ordering.base = b->crossings.edge_point_count;
+    if (together) gxbp_order_by_parts(b, &ordering);
     for (i = 0; i < b->crossings.edge_count && b->error == GX_OK; i++) {
         const uint32_t count = first[i + 1] - first[i];
         b->work.ordered_count = 0;
-        if (count == 0 || !GXBP_ROOM(b, work.ordered, work.ordered, count)) continue;
+        if (count == 0 || (together && gxbp_is_ordered(&ordering, i)) ||
+            !GXBP_ROOM(b, work.ordered, work.ordered, count))
+            continue;
         memcpy(b->work.ordered, points + first[i], count * sizeof *points);
         b->work.ordered_count = count;
         gxbp_order_edge(b, i);
@@ -11807,18 +11942,25 @@ static uint32_t gxbp_walk_chain(gxbp_division *d, uint32_t i, uint32_t *n) {
     return forward ? chain->to : chain->from;
 }
 
-/* Each polygon has an edge on the rim. Walks the rim for those that are not done yet. */
+/* Each polygon has an edge on the rim. Walks the rim for those that are not done yet. A chain is between two polygons,
+   and so there is room for each of them, unless it crosses another one: then the surface is not simple. */
 static GXBP_APART void gxbp_fill_polygons(gxb_boolean *b, gxbp_division *d) {
-    uint32_t done = 0, start, i, n;
+    uint32_t done = 0, walked, start, i, n;
     for (start = 0; start < d->rim_count; start++) {
         if (done >> start & 1) continue;
         i = start;
-        n = 0;
+        n = walked = 0;
         do {
             done |= 1u << i;
             d->polygon[n++] = d->rim[i];
             i = i + 1 == d->rim_count ? 0 : i + 1;
-            if (d->chain_at[i] != GXB_NONE) i = gxbp_walk_chain(d, i, &n);
+            if (d->chain_at[i] == GXB_NONE) continue;
+            if (walked >> d->chain_at[i] & 1) {
+                gxbp_stop(b, GX_ERROR_OVERLAP);
+                return;
+            }
+            walked |= 1u << d->chain_at[i];
+            i = gxbp_walk_chain(d, i, &n);
         } while (i != start);
         gxbp_fill_polygon(b, d, n);
     }
@@ -13105,8 +13247,40 @@ static size_t gxbp_begin_floods(gxb_boolean *b, gxbp_flood *floods, uint32_t *qu
     return count;
 }
 
-/* Spreads states in large new operands, if there are at least two. */
-static GXBP_COLD void gxbp_flood_operands(gxb_boolean *b) {
+/* left: of each part, whether one of its subtriangles needs a state */
+typedef struct gxbp_openings {
+    const gxb_boolean *b;
+    uint32_t *left;
+} gxbp_openings;
+
+static int gxbp_needs_state(const gxb_boolean *b, uint32_t f) {
+    return b->mesh.subtriangles[f].state == GXB_NONE && gxbp_is_surface(b, f);
+}
+
+static void gxbp_find_open(void *context, size_t part) {
+    const gxbp_openings *openings = (const gxbp_openings *)context;
+    const gxb_boolean *b = openings->b;
+    uint32_t end, i = gxbp_part_first(part, b->mesh.subtriangle_count - b->mesh.stated, &end);
+    while (i < end && !gxbp_needs_state(b, b->mesh.stated + i)) i++;
+    openings->left[part] = i < end;
+}
+
+/* Have the floods reached all? 0 also if there is no memory. */
+static GXBP_COLD int gxbp_is_all_flooded(gxb_boolean *b) {
+    const size_t parts = gxbp_part_count(b->mesh.subtriangle_count - b->mesh.stated);
+    gxbp_openings openings;
+    uint32_t left = 0;
+    size_t part;
+    openings.b = b;
+    openings.left = (uint32_t *)gxbp_borrow(b, parts * sizeof *openings.left);
+    if (openings.left == NULL) return 0;
+    gxbp_each_part(b, parts, gxbp_find_open, &openings);
+    for (part = 0; part < parts; part++) left += openings.left[part];
+    return left == 0;
+}
+
+/* Spreads states in large new operands, if there are at least two. Returns whether all subtriangles have states. */
+static GXBP_COLD int gxbp_flood_operands(gxb_boolean *b) {
     size_t count = 0, sources = 0, i;
     uint32_t n, rounds;
     gxbp_flood *floods;
@@ -13115,15 +13289,16 @@ static GXBP_COLD void gxbp_flood_operands(gxb_boolean *b) {
             count++;
             sources += b->in.operands[n].source_count;
         }
-    if (count < 2) return;
+    if (count < 2) return 0;
     floods = (gxbp_flood *)gxbp_borrow(b, count * sizeof *floods + sources * sizeof(uint32_t));
-    if (floods == NULL) return;
+    if (floods == NULL) return 0;
     count = gxbp_begin_floods(b, floods, (uint32_t *)(void *)(floods + count));
     for (rounds = 0; rounds < (uint32_t)GXBP_FLOOD_ROUNDS && b->error == GX_OK; rounds++) {
         gxbp_each_part(b, count, gxbp_run_flood, floods);
         if (gxbp_answer_floods(b, floods, count) == 0) break;
     }
     for (i = 0; i < count; i++) gxbp_finish_flood(b, &floods[i]);
+    return gxbp_is_all_flooded(b);
 }
 
 /* Finds a state by a ray and spreads it to all subtriangles that can be reached. */
@@ -13135,8 +13310,20 @@ static void gxbp_find_state_of(gxb_boolean *b, uint32_t f) {
     gxbp_spread_pending(b);
 }
 
-static GXBP_APART void gxbp_find_states(gxb_boolean *b) {
+/* Finds states where none has come yet. Undivided sources first: their rays are cheap. */
+static GXBP_APART void gxbp_find_all_states(gxb_boolean *b) {
     uint32_t s, f;
+    for (s = gxbp_new_sources(b); s < b->in.source_count && b->error == GX_OK; s++) {
+        f = b->in.sources[s].subtriangle;
+        if (!(b->in.sources[s].flags & GXBP_DIVIDED) && f != GXB_NONE && gxbp_needs_state(b, f))
+            gxbp_find_state_of(b, f);
+    }
+    for (f = b->mesh.stated; f < b->mesh.subtriangle_count && b->error == GX_OK; f++)
+        if (gxbp_needs_state(b, f)) gxbp_find_state_of(b, f);
+}
+
+static GXBP_APART void gxbp_find_states(gxb_boolean *b) {
+    uint32_t s;
     if (b->error != GX_OK) return;
     if (b->points.united) gxbp_rename_vertices(b);
     if (b->winding.stated == 0) {
@@ -13151,18 +13338,7 @@ static GXBP_APART void gxbp_find_states(gxb_boolean *b) {
     b->work.pending_count = b->work.visit_count = 0;
     /* each source and each subtriangle is pushed at most once */
     if (!GXBP_ROOM(b, work.visits, work.visit, (size_t)b->in.source_count + b->mesh.subtriangle_count)) return;
-    if (gxbp_has_jobs(b)) gxbp_flood_operands(b);
-    /* undivided sources first: their rays are cheap */
-    for (s = gxbp_new_sources(b); s < b->in.source_count && b->error == GX_OK; s++) {
-        f = b->in.sources[s].subtriangle;
-        if (b->in.sources[s].flags & GXBP_DIVIDED || f == GXB_NONE || b->mesh.subtriangles[f].state != GXB_NONE ||
-            !gxbp_is_surface(b, f))
-            continue;
-        gxbp_find_state_of(b, f);
-    }
-    for (f = b->mesh.stated; f < b->mesh.subtriangle_count; f++)
-        if (b->mesh.subtriangles[f].state == GXB_NONE && b->error == GX_OK && gxbp_is_surface(b, f))
-            gxbp_find_state_of(b, f);
+    if (!gxbp_has_jobs(b) || !gxbp_flood_operands(b)) gxbp_find_all_states(b);
     for (s = b->winding.stated; s < b->in.operand_count; s++) b->in.operands[s].reached = 1;
     b->winding.stated = b->in.operand_count;
     b->mesh.stated = b->mesh.subtriangle_count;
@@ -15353,6 +15529,7 @@ GXFEM_API gx_result gxb_boolean_set_retained(gxb_boolean *boolean, int retained,
 }
 
 static gx_result gxbp_check_operand(const gxb_boolean *b, const gxb_operand *o, gx_failure *failure) {
+    uint32_t largest = 0;
     size_t i;
     if (o->operation > GXB_SPLIT) return gxbp_refuse(failure, "operation");
     if (o->rule > GXB_ODD) return gxbp_refuse(failure, "rule");
@@ -15364,9 +15541,10 @@ static gx_result gxbp_check_operand(const gxb_boolean *b, const gxb_operand *o, 
         return gxbp_fail(failure, GX_ERROR_LIMIT, "triangle_count", SIZE_MAX);
     if (o->vertex_count > INT32_MAX / 4) return gxbp_fail(failure, GX_ERROR_LIMIT, "vertex_count", SIZE_MAX);
     if (b->in.operand_count > INT32_MAX / 64) return gxbp_end(failure, GX_ERROR_LIMIT);
-    for (i = 0; i < 3 * o->triangle_count; i++)
-        if (o->triangles[i] >= o->vertex_count) return gxbp_fail(failure, GX_ERROR_INDEX, "triangles", i / 3);
-    return GX_OK;
+    for (i = 0; i < 3 * o->triangle_count; i++) largest = o->triangles[i] > largest ? o->triangles[i] : largest;
+    if (largest < o->vertex_count) return GX_OK;
+    for (i = 0; o->triangles[i] < o->vertex_count; i++) {}
+    return gxbp_fail(failure, GX_ERROR_INDEX, "triangles", i / 3);
 }
 
 GXFEM_API gx_result gxb_boolean_add(gxb_boolean *b, const gxb_operand *operand, gx_failure *failure) {

@@ -1563,6 +1563,48 @@ static int check_star(const wl_surface *s, double *volume) {
     return star;
 }
 
+/* A ball whose surface goes twice around its axis, with two radii: it crosses itself. Moved along x */
+static wl_surface twice_around(size_t down, double along) {
+    static const double zero[3] = {0, 0, 0};
+    wl_surface s = ball_of(zero, 1, 2 * down, down);
+    size_t i;
+    for (i = 0; i < s.vertex_count; i++) {
+        double *x = s.vertices + 3 * i;
+        const double turn = atan2(x[1], x[0]), wide = hypot(x[0], x[1]), r = 1 + 0.2 * wide * cos(turn);
+        x[0] = r * wide * cos(2 * turn) + along;
+        x[1] = r * wide * sin(2 * turn) + 0.013 * (along > 0);
+        x[2] *= r;
+    }
+    return s;
+}
+
+/* Who vouches for surfaces that cross themselves gets an error or a result, never a crash. */
+START_TEST(broken_promises) {
+    size_t down, refused = 0;
+    for (down = 8; down <= 44; down += 4) {
+        wl_surface s[2];
+        gxb_operand operands[2];
+        gxb_boolean *b;
+        gxb_boolean_result r;
+        gx_failure failure;
+        gx_result result;
+        size_t i;
+        for (i = 0; i < 2; i++) {
+            s[i] = twice_around(down, 0.5 * (double)i);
+            operands[i] = operand_of(&s[i], i == 0 ? GXB_UNION : GXB_DIFFERENCE);
+            operands[i].simple = 1;
+        }
+        b = boolean_of(operands, 2, GXB_DIVIDED, 0, 0);
+        result = gxb_boolean_evaluate(b, &r, &failure);
+        ck_assert(result == GX_OK || (result == GX_ERROR_OVERLAP && strcmp(failure.field, "simple") == 0));
+        refused += result != GX_OK;
+        gxb_boolean_destroy(b);
+        for (i = 0; i < 2; i++) surface_free(&s[i]);
+    }
+    ck_assert_uint_gt(refused, 0);
+}
+END_TEST
+
 /* What the middle of a surface sees all of does not cross itself, if the surface winds around it once. */
 START_TEST(stars_are_simple) {
     int i, stars = 0, cases = 300;
@@ -1996,6 +2038,7 @@ int main(void) {
     tcase_add_test(tests, rounded_sticks_are_mended);
     tcase_add_loop_test(tests, crossings_around_islands, 0, 200 / FEWER);
     tcase_add_test(tests, stars_are_simple);
+    tcase_add_test(tests, broken_promises);
     tcase_add_test(tests, memory_limit);
     tcase_add_loop_test(tests, sizes_are_numbers_or_refused, 0, 17);
     tcase_add_test(tests, small_coordinates_are_numbers_or_refused);
