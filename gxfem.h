@@ -59,7 +59,7 @@
  *     what acts on it:           >>attached >>supports >>model
  *     the skin:                  >>corners >>vertices >>faces >>skinning
  *     points and rays:           >>tree >>locate >>nearest >>hits >>rays
- *     a step, with contact:      >>touch >>colliders >>meeting >>crowding >>seeking >>pairing
+ *     a step, with contact:      >>touch >>carrying >>colliders >>meeting >>crowding >>seeking >>pairing
  *                                >>pressing >>telling >>step
  *     a blade in space:          >>layers >>edges >>relations >>fronts >>glances >>strokes >>ways >>blade
  *                                >>contacts >>carve
@@ -1580,7 +1580,8 @@ typedef struct gxp_touch_facet {
     uint32_t vertex[3], element, fragment;
 } gxp_touch_facet;
 
-/* What a sample pressed with at the end of the last step. A sample is a vertex or, from vertex_count on, a facet */
+/* What a sample pressed with at the end of the last step. A sample is a vertex, by its name, or, from vertex_count on,
+   a facet */
 typedef struct gxp_touch_state {
     uint32_t sample, other; /* other: a collider's id; GXP_NONE: the body itself */
     double pressed;         /* m: depth */
@@ -1596,8 +1597,11 @@ typedef struct gxp_touch_surface { /* facets by fragment, then as they lie in sp
     uint32_t state_count, state_capacity;
     double largest;    /* m: size of the vertices' elements */
     gxp_words guesses; /* of each vertex: the facet that it met when it was sought last, or GXP_NONE */
+    gxp_words names;   /* of each vertex: its number in the skin, by which states and pairs are in order */
+    gxp_words places;  /* and back */
     gxp_words samples; /* vertices that are, in order of the facets that they are of: near each other, facing alike */
     gxp_words sides;   /* of tips: tip, vertex of one of its sides; see gxp_add_tips */
+    gxp_words crowds;  /* of few: 2 x the end in samples, + 1 if the next ones are of other many */
 } gxp_touch_surface;
 
 typedef struct gxp_touch_deep { /* a collider whose middle is behind the skin, or hardly in front of it */
@@ -1619,26 +1623,37 @@ typedef struct gxp_touch_pair {  /* of a step */
     double place[3], way[3];     /* m: of the collider's point at the step's start; its way within the step */
 } gxp_touch_pair;
 
+/* Quick tests of the search are in single precision. Places are measured from touch.origin; the fourth number of four
+   is 0. */
+typedef struct gxp_touch_place { /* of a vertex, m */
+    float from[4], to[4];        /* at the step's start, and at its end if nothing changes its velocity */
+} gxp_touch_place;
+
+typedef struct gxp_touch_span { /* along the axes */
+    float low[4], high[4];
+} gxp_touch_span;
+
 typedef struct gxp_touch_box { /* over facets */
-    gxp_bounds from, to;       /* at the step's start, and at its end if nothing changes their velocities */
-    gxp_bounds normals;        /* at the start */
+    gxp_touch_span from, to;   /* m: likewise; no less than what is in it, whatever is rounded */
+    gxp_touch_span normals;    /* at the start */
     int stirred;               /* 0: what is in it moves as in the last search, and is where it was */
 } gxp_touch_box;
 
 #define GXP_TOUCH_LEAF 4u /* facets in each leaf of the tree */
 
 typedef struct gxp_touch_leaf { /* what tells quickly which of its facets a sample cannot meet; 0 where it has none */
-    double normal[3][GXP_TOUCH_LEAF], height[GXP_TOUCH_LEAF]; /* in space; of the facet's plane along the normal */
-    /* Of each edge: a direction in the plane, away from the facet, of length 1 or 0; how far along it the edge is */
-    double out[3][3][GXP_TOUCH_LEAF], reach[3][GXP_TOUCH_LEAF];
-    double speed[3], spread; /* m/s: mean of the corners; how much those of one differ from it at most */
-    uint64_t fitted;         /* 1: it is of this step */
+    float normal[3][GXP_TOUCH_LEAF], height[GXP_TOUCH_LEAF]; /* in space; of the facet's plane along the normal */
+    /* Of each edge: a direction in the plane, away from the facet, of the edge's length; that; how far along it it is
+     */
+    float out[3][3][GXP_TOUCH_LEAF], length[3][GXP_TOUCH_LEAF], reach[3][GXP_TOUCH_LEAF];
+    float way[3], spread; /* m: the corners' mean way within the step; how much those of one differ from it at most */
+    float bit;            /* m: a bound of rounding */
+    uint32_t fitted;      /* 1: it is of this step */
 } gxp_touch_leaf;
 
 typedef struct gxp_touch_crowd { /* samples that are sought together */
     gxp_touch_box own;
-    double slack, ahead, beside; /* m: how far what they meet may be at most: behind it, in front of it, beside it */
-    double size;                 /* m: of their elements, the largest */
+    float slack, ahead, beside; /* m: how far what they meet may be at most: behind it, in front of it, beside it */
 } gxp_touch_crowd;
 
 typedef struct gxp_touch_beside { /* a sample that may come near a collider */
@@ -1681,7 +1696,10 @@ typedef struct gxp_touch {
     uint32_t beside_capacity, deep_capacity;
     gxp_touch_pair *pairs;
     double *moved;           /* vertices x 9: position and velocity in space, outward normal */
-    double *facing;          /* facets x 3: normals in space, of length 1, or 0 */
+    float *facing;           /* facets x 4: normals in space, of length 1, or 0; the fourth is 0 */
+    double origin[3];        /* m: since all boxes were fitted last */
+    gxp_touch_place *places; /* of vertices */
+    gxp_touch_crowd *crowds; /* those that surface.crowds has */
     gxp_touch_box *boxes;    /* a complete binary tree over the facets, GXP_TOUCH_LEAF in each of its leaves */
     gxp_touch_leaf *leaves;  /* of those that have facets */
     gxp_words sides;         /* pairs x gxp_pair_span: vectors of their points */
@@ -1694,8 +1712,8 @@ typedef struct gxp_touch {
     gxp_words roles;         /* of a surface's vertices: GXP_TOUCH_INSIDE ... */
     gxp_words ranked;        /* facets along a curve */
     gxp_words kept_leaves;   /* of these, those in reach of a sample */
-    double *gaps;            /* m, of kept_leaves: how far they are from the sample at least */
-    double *passed;          /* 12 x near.count, rounded up: boxes of those leaves, and where samples meet them */
+    float *gaps;             /* m, of kept_leaves: how far they are from the sample at least */
+    float *passed;           /* 12 x near.count, rounded up: boxes of those leaves, and where samples meet them */
     gxp_words crowd, near;   /* boxes that may hold what many samples meet; leaves that do what some of them meet */
     uint32_t leaf_count;     /* a power of two */
     uint32_t sought;         /* the last search was for surfaces[sought - 1]; 0: for none of these, or it failed */
@@ -1705,8 +1723,8 @@ typedef struct gxp_touch {
     gxp_touch_event *events; /* of a call */
     uint32_t event_capacity;
     uint32_t found, kept; /* pairs of contact: of this step; of the last one that succeeded */
-    uint32_t passed_capacity, pair_capacity, moved_capacity, facing_capacity, box_capacity, leaf_capacity, gap_capacity,
-        weight_capacity, slip_capacity, force_capacity;
+    uint32_t passed_capacity, pair_capacity, moved_capacity, facing_capacity, place_capacity, crowd_capacity,
+        box_capacity, leaf_capacity, gap_capacity, weight_capacity, slip_capacity, force_capacity;
 } gxp_touch;
 #define GXP_TOUCH_COPIES 16u /* copies of a pair at most: those of a vertex and of a facet's corners */
 
@@ -2024,17 +2042,22 @@ static const gxp_column gxp_lists[] = {
     GXP_WORDS(touch.surfaces[0].guesses), GXP_WORDS(touch.surfaces[1].guesses),
     GXP_WORDS(touch.surfaces[0].samples), GXP_WORDS(touch.surfaces[1].samples),
     GXP_WORDS(touch.surfaces[0].sides), GXP_WORDS(touch.surfaces[1].sides),
+    GXP_WORDS(touch.surfaces[0].names), GXP_WORDS(touch.surfaces[1].names),
+    GXP_WORDS(touch.surfaces[0].places), GXP_WORDS(touch.surfaces[1].places),
+    GXP_WORDS(touch.surfaces[0].crowds), GXP_WORDS(touch.surfaces[1].crowds),
     GXP_WORDS(touch.crowd),               GXP_WORDS(touch.near), GXP_WORDS(touch.kept_leaves),
     GXP_WORDS(touch.stirred),
     GXP_LIST(touch.known, touch.known_capacity, sizeof(gxp_touch_known)),
     GXP_LIST(touch.pairs, touch.pair_capacity, sizeof(gxp_touch_pair)),
     GXP_LIST(touch.moved, touch.moved_capacity, 9 * sizeof(double)),
-    GXP_LIST(touch.passed, touch.passed_capacity, sizeof(double)),
-    GXP_LIST(touch.facing, touch.facing_capacity, 3 * sizeof(double)),
+    GXP_LIST(touch.passed, touch.passed_capacity, sizeof(float)),
+    GXP_LIST(touch.places, touch.place_capacity, sizeof(gxp_touch_place)),
+    GXP_LIST(touch.crowds, touch.crowd_capacity, sizeof(gxp_touch_crowd)),
+    GXP_LIST(touch.facing, touch.facing_capacity, 4 * sizeof(float)),
     GXP_LIST(touch.events, touch.event_capacity, sizeof(gxp_touch_event)), GXP_WORDS(touch.touching),
     GXP_LIST(touch.boxes, touch.box_capacity, sizeof(gxp_touch_box)), GXP_WORDS(touch.sides),
     GXP_LIST(touch.leaves, touch.leaf_capacity, sizeof(gxp_touch_leaf)),
-    GXP_LIST(touch.gaps, touch.gap_capacity, sizeof(double)),
+    GXP_LIST(touch.gaps, touch.gap_capacity, sizeof(float)),
     GXP_LIST(touch.weights, touch.weight_capacity, sizeof(double)),
     GXP_LIST(touch.slips, touch.slip_capacity, 3 * sizeof(double)),
     GXP_LIST(touch.forces, touch.force_capacity, 3 * sizeof(double)),
@@ -12147,8 +12170,8 @@ GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const do
 }
 
 /* >>touch: the surface of contact ---------------------------------------------------------------------------------- */
-/* In: the cells, the state of the surface before a cut. Out: samples and facets, with the state that the material had.
-   Touches what a step with contact works with; the skin that the caller sees stays as it is. */
+/* In: the cells. Out: samples and facets. Touches what a step with contact works with; the skin that the caller sees
+   stays as it is. */
 
 /* The surface is made from nothing after each cut, so that it depends on the body alone, not on its history: a skin of
    its own, of which samples and facets are copied. */
@@ -12165,6 +12188,11 @@ GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const do
 #define GXP_TOUCH_FACING 0.5
 #define GXP_TOUCH_BEHIND 1e-9
 enum { GXP_TOUCH_SIDES = 16 };
+/* Samples that are sought together, at most: those that leave out boxes together first, then those that list leaves
+   together. With half or twice of either a step takes up to 4 % longer. A cosine: how alike they face at rest */
+enum { GXP_TOUCH_MANY = 128, GXP_TOUCH_FEW = 32 };
+#define GXP_TOUCH_ALIKE  0.7
+#define GXP_TOUCH_BEYOND 1e30f                              /* m: further than anything */
 enum { GXP_TOUCH_INSIDE, GXP_TOUCH_RIM, GXP_TOUCH_CORNER }; /* of a vertex: where it is on an even part of a surface */
 
 /* Releases the arrays of body.skin. */
@@ -12462,23 +12490,70 @@ static gx_result gxp_add_tips(gx_body *body, gxp_touch_surface *s) {
     return result;
 }
 
-/* Lists the samples by the first facet that each is a corner of. Tips have none, and come last. */
-static gx_result gxp_list_chosen(gx_body *body, gxp_touch_surface *s) {
-    gxp_words *listed = &body->touch.roles; /* of each vertex: 1 if it is in the list */
-    gx_result result = gxp_start_words(body, &s->samples, s->vertex_count);
-    uint32_t i, n;
-    if (result == GX_OK) result = gxp_start_words(body, listed, s->vertex_count);
-    for (i = 0; i < s->vertex_count && result == GX_OK; i++) listed->data[listed->count++] = !(s->vertices[i].area > 0);
-    for (i = 0; i < s->facet_count && result == GX_OK; i++)
-        for (n = 0; n < 3; n++) {
-            const uint32_t vertex = s->facets[i].vertex[n];
-            if (!listed->data[vertex]) s->samples.data[s->samples.count++] = vertex;
-            listed->data[vertex] = 1;
+/* Numbers the vertices in the order of the facets that they are of, so that what is near in space is near in memory.
+   Those without facets come last, as they were. */
+static gx_result gxp_renumber(gx_body *body, gxp_touch_surface *s) {
+    uint32_t i, n, count = 0, *place, *name;
+    gx_result result = gxp_start_words(body, &s->places, s->vertex_count);
+    if (result == GX_OK) result = gxp_start_words(body, &s->names, s->vertex_count);
+    if (result != GX_OK) return result;
+    place = s->places.data;
+    name = s->names.data;
+    for (i = 0; i < s->vertex_count; i++) place[i] = GXP_NONE;
+    for (i = 0; i < 3 * s->facet_count; i++) {
+        uint32_t *vertex = &s->facets[i / 3].vertex[i % 3];
+        if (place[*vertex] == GXP_NONE) place[*vertex] = count++;
+        *vertex = place[*vertex];
+    }
+    for (i = 0; i < s->vertex_count; i++)
+        if (place[i] == GXP_NONE) place[i] = count++;
+    for (i = 0; i < s->vertex_count; i++) s->vertices[i].stands = place[s->vertices[i].stands];
+    for (i = 0; i < s->sides.count; i++) s->sides.data[i] = place[s->sides.data[i]];
+    for (i = 0; i < s->vertex_count; i++) name[i] = i;
+    for (i = 0; i < s->vertex_count; i++)
+        while ((n = place[name[i]]) != i) {
+            const gxp_touch_vertex other = s->vertices[n];
+            const uint32_t own = name[n];
+            s->vertices[n] = s->vertices[i];
+            s->vertices[i] = other;
+            name[n] = name[i];
+            name[i] = own;
         }
-    for (i = 0; i < s->sides.count && result == GX_OK; i += 2) {
-        const uint32_t tip = s->sides.data[i];
-        if (!listed->data[tip]) s->samples.data[s->samples.count++] = tip;
-        listed->data[tip] = 1;
+    s->places.count = s->names.count = s->vertex_count;
+    return GX_OK;
+}
+
+/* Lists the samples. Tips have no facets, and come last. */
+static gx_result gxp_list_chosen(gx_body *body, gxp_touch_surface *s) {
+    const gx_result result = gxp_start_words(body, &s->samples, s->vertex_count);
+    uint32_t i;
+    for (i = 0; i < s->vertex_count && result == GX_OK; i++)
+        if (s->vertices[i].area > 0) s->samples.data[s->samples.count++] = i;
+    return result;
+}
+
+/* How many of the samples from `first` on, at most `most`, are of one piece and face alike? */
+static uint32_t gxp_crowd_size(const gxp_touch_surface *s, uint32_t first, uint32_t most) {
+    const uint32_t *samples = s->samples.data + first, left = s->samples.count - first;
+    const gxp_touch_vertex *v = &s->vertices[samples[0]];
+    uint32_t i;
+    for (i = 1; i < left && i < most; i++) {
+        const gxp_touch_vertex *w = &s->vertices[samples[i]];
+        if (v->fragment != w->fragment || gxp_dot(v->normal, w->normal) < GXP_TOUCH_ALIKE) break;
+    }
+    return i;
+}
+
+/* Divides the samples into crowds of many, and these into crowds of few. */
+static gx_result gxp_list_crowds(gx_body *body, gxp_touch_surface *s) {
+    uint32_t first = 0, end = 0;
+    gx_result result = gxp_start_words(body, &s->crowds, s->samples.count);
+    while (end < s->samples.count && result == GX_OK) {
+        for (end += gxp_crowd_size(s, end, GXP_TOUCH_MANY); first < end;) {
+            const uint32_t few = GXP_TOUCH_FEW, left = end - first;
+            first += gxp_crowd_size(s, first, left < few ? left : few);
+            s->crowds.data[s->crowds.count++] = 2 * first + (first == end);
+        }
     }
     return result;
 }
@@ -12498,18 +12573,32 @@ static gx_result gxp_make_surface(gx_body *body, gxp_touch_surface *to) {
     if (result == GX_OK) result = gxp_copy_samples(body, to);
     if (result == GX_OK) result = gxp_choose_samples(body, to);
     if (result == GX_OK) result = gxp_add_tips(body, to);
+    if (result == GX_OK) result = gxp_renumber(body, to);
     if (result == GX_OK) result = gxp_list_chosen(body, to);
+    if (result == GX_OK) result = gxp_list_crowds(body, to);
     gxp_release_skin(body);
     body->skin = own;
     return result;
 }
 
-/* The first state of a sample, or of one behind it */
-static uint32_t gxp_first_state(const gxp_touch_surface *s, uint32_t sample) {
+/* >>carrying: states of samples go from surface to surface --------------------------------------------------------- */
+/* In: the surface before a cut with its states, the one after it. Out: the states of the latter. Touches lists of a
+   step with contact. */
+
+/* The number of a sample by which states and pairs are in order, and back: facets have their own */
+static uint32_t gxp_sample_name(const gxp_touch_surface *s, uint32_t sample) {
+    return sample < s->vertex_count ? s->names.data[sample] : sample;
+}
+static uint32_t gxp_named_sample(const gxp_touch_surface *s, uint32_t name) {
+    return name < s->vertex_count ? s->places.data[name] : name;
+}
+
+/* The first state of a sample, or of one behind it. name: its */
+static uint32_t gxp_first_state(const gxp_touch_surface *s, uint32_t name) {
     uint32_t low = 0, high = s->state_count;
     while (low < high) {
         const uint32_t middle = low + (high - low) / 2;
-        if (s->states[middle].sample < sample)
+        if (s->states[middle].sample < name)
             low = middle + 1;
         else
             high = middle;
@@ -12524,11 +12613,12 @@ static uint32_t gxp_same_sample(const gxp_touch_surface *s, const gxp_keys *orde
     uint32_t first = gxp_first_key(order, (uint64_t)hash << 32), found = GXP_NONE;
     double best = 0.5; /* sides of a sheet have opposite normals */
     for (; first < order->count && GXP_FIRST(order->data[first]) == hash; first++) {
-        const gxp_touch_vertex *w = &s->vertices[GXP_SECOND(order->data[first])];
+        const uint32_t vertex = s->places.data[GXP_SECOND(order->data[first])];
+        const gxp_touch_vertex *w = &s->vertices[vertex];
         const double cosine = gxp_dot(v->normal, w->normal);
         if (memcmp(v->rest, w->rest, sizeof v->rest) != 0 || !(cosine > best)) continue;
         best = cosine;
-        found = GXP_SECOND(order->data[first]);
+        found = vertex;
     }
     return found;
 }
@@ -12555,13 +12645,13 @@ static uint32_t gxp_facet_at(const gxp_touch_surface *s, const gxp_keys *order, 
     return found;
 }
 
-/* Room for another state; it is the last one. */
-static gx_result gxp_push_state(gx_body *body, gxp_touch_surface *to, const gxp_touch_state *state, uint32_t sample) {
+/* Room for another state; it is the last one. name: its sample's */
+static gx_result gxp_push_state(gx_body *body, gxp_touch_surface *to, const gxp_touch_state *state, uint32_t name) {
     const gx_result result =
         gxp_reserve(&body->config.allocator, &to->states, sizeof *to->states, to->state_count, &to->state_capacity, 1);
     if (result != GX_OK) return result;
     to->states[to->state_count] = *state;
-    to->states[to->state_count++].sample = sample;
+    to->states[to->state_count++].sample = name;
     return GX_OK;
 }
 
@@ -12569,21 +12659,22 @@ static gx_result gxp_push_state(gx_body *body, gxp_touch_surface *to, const gxp_
    those on colliders. */
 static gx_result gxp_add_states(gx_body *body, const gxp_touch_surface *from, uint32_t sample, int colliders,
                                 double share, gxp_touch_surface *to, uint32_t last) {
-    uint32_t i = gxp_first_state(from, sample), at;
+    const uint32_t source = gxp_sample_name(from, sample), target = gxp_sample_name(to, last);
+    uint32_t i = gxp_first_state(from, source), at;
     int k;
-    for (; i < from->state_count && from->states[i].sample == sample && share > 0; i++) {
+    for (; i < from->state_count && from->states[i].sample == source && share > 0; i++) {
         const gxp_touch_state *state = &from->states[i];
         if ((state->other != GXP_NONE) != colliders) continue;
         for (at = to->state_count;
-             at > 0 && to->states[at - 1].sample == last && to->states[at - 1].other != state->other;)
+             at > 0 && to->states[at - 1].sample == target && to->states[at - 1].other != state->other;)
             at--;
-        if (at == 0 || to->states[at - 1].sample != last) {
+        if (at == 0 || to->states[at - 1].sample != target) {
             gxp_touch_state none;
             gx_result result;
             memset(&none, 0, sizeof none);
             none.other = state->other;
             memcpy(none.rest, to->vertices[last].rest, sizeof none.rest);
-            result = gxp_push_state(body, to, &none, last);
+            result = gxp_push_state(body, to, &none, target);
             if (result != GX_OK) return result;
             at = to->state_count;
         }
@@ -12638,14 +12729,16 @@ static gx_result gxp_carry_vertices(gx_body *body, const gxp_touch_surface *from
     members->count = 0;
     result = gxp_keys_room(body, members, 2 * (size_t)to->vertex_count);
     for (i = 0; i < to->vertex_count && result == GX_OK; i++)
-        members->data[members->count++] = (uint64_t)to->vertices[i].stands << 32 | i;
+        members->data[members->count++] = (uint64_t)to->names.data[to->vertices[i].stands] << 32 | to->names.data[i];
     if (result == GX_OK) result = gxp_sort_keys(body, members, 0, members->count);
     for (i = 0; i < to->vertex_count && result == GX_OK; i++) {
+        const uint32_t last = to->places.data[i];
+        const gxp_touch_vertex *own = &to->vertices[last];
         for (; next < members->count && GXP_FIRST(members->data[next]) == i && result == GX_OK; next++) {
-            const gxp_touch_vertex *v = &to->vertices[GXP_SECOND(members->data[next])];
-            result = gxp_carry_vertex(body, from, places, elements, v, 0, v->given / to->vertices[i].layers, to, i);
+            const gxp_touch_vertex *v = &to->vertices[to->places.data[GXP_SECOND(members->data[next])]];
+            result = gxp_carry_vertex(body, from, places, elements, v, 0, v->given / own->layers, to, last);
         }
-        if (result == GX_OK) result = gxp_carry_vertex(body, from, places, elements, &to->vertices[i], 1, 1, to, i);
+        if (result == GX_OK) result = gxp_carry_vertex(body, from, places, elements, own, 1, 1, to, last);
     }
     return result;
 }
@@ -12685,7 +12778,7 @@ static gx_result gxp_carry_states(gx_body *body, const gxp_touch_surface *from, 
     if (result == GX_OK) result = gxp_keys_room(body, elements, 2 * (size_t)from->facet_count);
     if (result != GX_OK) return result;
     for (i = 0; i < from->vertex_count; i++)
-        places->data[places->count++] = gxp_hash_doubles(0, from->vertices[i].rest, 3) << 32 | i;
+        places->data[places->count++] = gxp_hash_doubles(0, from->vertices[i].rest, 3) << 32 | from->names.data[i];
     for (i = 0; i < from->facet_count; i++)
         elements->data[elements->count++] = (uint64_t)from->facets[i].element << 32 | i;
     result = gxp_sort_keys(body, places, 0, places->count);
@@ -13091,7 +13184,7 @@ static uint32_t gxp_deep_parts(const gxp_touch *t, const gxp_touch_surface *s, u
 }
 
 /* Lists a sample for the search of pairs with a collider. */
-static gx_result gxp_list_sample(gx_body *body, uint32_t sample, uint32_t collider, uint32_t parts, double layers) {
+static gx_result gxp_list_sample(gx_body *body, uint32_t name, uint32_t collider, uint32_t parts, double layers) {
     gxp_touch *t = &body->touch;
     gx_result result =
         gxp_reserve(&body->config.allocator, &t->beside, sizeof *t->beside, t->order.count, &t->beside_capacity, 1);
@@ -13100,7 +13193,7 @@ static gx_result gxp_list_sample(gx_body *body, uint32_t sample, uint32_t collid
     t->beside[t->order.count].collider = collider;
     t->beside[t->order.count].parts = parts;
     t->beside[t->order.count].layers = layers;
-    t->order.data[t->order.count] = (uint64_t)sample << 32 | t->order.count;
+    t->order.data[t->order.count] = (uint64_t)name << 32 | t->order.count;
     t->order.count++;
     return GX_OK;
 }
@@ -13127,7 +13220,7 @@ static gx_result gxp_list_samples(gx_body *body, const gxp_touch_surface *s, dou
     layers = 0.5 * sqrt(gxp_dot(n, n)) / f->size;
     if (parts > 1) return gxp_list_sample(body, s->vertex_count + facet, collider, parts, layers);
     for (k = 0; k < 3 && parts == 1 && result == GX_OK; k++)
-        result = gxp_list_sample(body, f->vertex[k], collider, 1, layers / 3);
+        result = gxp_list_sample(body, s->names.data[f->vertex[k]], collider, 1, layers / 3);
     return result;
 }
 
@@ -13141,15 +13234,14 @@ static gx_result gxp_list_beside(gx_body *body, const gxp_touch_surface *s, doub
     stack[count++] = 0;
     while (count > 0 && result == GX_OK) {
         const uint32_t box = stack[--count];
-        gxp_bounds around = t->boxes[box].from;
-        const gxp_bounds *b = &around;
+        const gxp_touch_span *from = &t->boxes[box].from, *to = &t->boxes[box].to;
         double x[3], own[3], normal[3], half = 0, far, d;
         int k;
-        gxp_add_bounds(&around, &t->boxes[box].to);
-        if (b->low[0] > b->high[0]) continue;
+        if (from->low[0] > from->high[0]) continue;
         for (k = 0; k < 3; k++) {
-            x[k] = 0.5 * (b->low[k] + b->high[k]) - c->pose[4 * k + 3];
-            half += 0.25 * (b->high[k] - b->low[k]) * (b->high[k] - b->low[k]);
+            const double low = fmin(from->low[k], to->low[k]), high = fmax(from->high[k], to->high[k]);
+            x[k] = 0.5 * (low + high) + t->origin[k] - c->pose[4 * k + 3];
+            half += 0.25 * (high - low) * (high - low);
         }
         half = sqrt(half);
         far = sqrt(gxp_dot(x, x));
@@ -13314,6 +13406,9 @@ static int gxp_has_changed(const gxp_touch *t, uint32_t id) {
 #define GXP_MOST(a, b) ((a) > (b) ? (a) : (b))
 #endif
 
+/* In sizes of an element: how far the origin of places may be from where it was */
+#define GXP_TOUCH_FAR 64
+
 /* Since the last search: a vertex is elsewhere, or has another velocity; or that of a facet beside it */
 #define GXP_TOUCH_MOVED  1u
 #define GXP_TOUCH_TURNED 2u
@@ -13345,38 +13440,77 @@ static void gxp_move_vertex(const gx_body *body, const gxp_touch_vertex *v, doub
                                          gxp_affine_speed(body, v->copies[n], v->rest, k));
 }
 
-/* Position, velocity and normal of all vertices, normals of facets; touch.stirred. A facet whose corners are in a line
-   but for rounding has no normal, and meets nothing: those beside it do. anew: there are none of a step before */
-static void gxp_move_surface(gx_body *body, const gxp_touch_surface *s, int anew) {
+/* Measures places from a vertex, unless it is still near where it was when this was done. anew: it must be done.
+   Returns whether it was. */
+static int gxp_set_origin(gx_body *body, const gxp_touch_surface *s, int anew) {
+    const double far = GXP_TOUCH_FAR * s->largest;
+    double x[3];
+    if (s->vertex_count == 0) return 0;
+    gxp_map_point(body, s->vertices[0].rest, s->vertices[0].copies, s->vertices[0].weights, 4, x);
+    if (!anew && gxp_square_distance(x, body->touch.origin) < far * far) return 0;
+    memcpy(body->touch.origin, x, sizeof body->touch.origin);
+    return 1;
+}
+
+/* Takes the direction of a vertex's normal. */
+static void gxp_turn_vertex(gxp_touch *t, uint32_t vertex) {
+    double *normal = t->moved + 9 * (size_t)vertex + 6, unit[3] = {0, 0, 0};
+    (void)gxp_unit(normal, unit);
+    memcpy(normal, unit, sizeof unit);
+}
+
+/* Position and velocity of all vertices; touch.stirred; anew: there are none of a step before */
+static void gxp_place_vertices(gx_body *body, const gxp_touch_surface *s, double dt, int anew) {
+    gxp_touch *t = &body->touch;
+    uint32_t i;
+    int k;
+    for (i = 0; i < s->vertex_count; i++) {
+        double *x = t->moved + 9 * (size_t)i, now[6];
+        gxp_move_vertex(body, &s->vertices[i], now);
+        for (k = 6; k < 9; k++) x[k] = 0;
+        t->stirred.data[i] = anew || memcmp(x, now, sizeof now) != 0 ? GXP_TOUCH_MOVED : 0;
+        if (!t->stirred.data[i]) continue;
+        memcpy(x, now, sizeof now);
+        t->places[i].from[3] = t->places[i].to[3] = 0;
+        for (k = 0; k < 3; k++) {
+            t->places[i].from[k] = (float)(x[k] - t->origin[k]);
+            t->places[i].to[k] = (float)(x[k] + dt * x[3 + k] - t->origin[k]);
+        }
+    }
+}
+
+/* Twice the area of a facet along its normal, in space. 0: its corners are in a line but for rounding. So it has no
+   normal, and meets nothing: those beside it do. */
+static int gxp_space_normal(const gxp_touch *t, const gxp_touch_facet *f, double n_area[3]) {
+    static const uint32_t corner[3] = {0, 1, 2};
+    double x[9], longest = 0;
+    int n;
+    for (n = 0; n < 3; n++) memcpy(x + 3 * n, t->moved + 9 * (size_t)f->vertex[n], 3 * sizeof *x);
+    gxp_triangle_normal(x, corner, n_area);
+    for (n = 0; n < 3; n++) longest = fmax(longest, gxp_square_distance(x + 3 * n, x + 3 * ((n + 1) % 3)));
+    return gxp_size(n_area) > GXP_TOUCH_THIN * longest;
+}
+
+/* Normals of facets, and of samples and tips' sides; touch.stirred */
+static void gxp_turn_surface(gx_body *body, const gxp_touch_surface *s) {
     double *moved = body->touch.moved;
     uint32_t *stirred = body->touch.stirred.data, i;
     int n, k;
-    for (i = 0; i < s->vertex_count; i++) {
-        double *x = moved + 9 * (size_t)i, now[6];
-        gxp_move_vertex(body, &s->vertices[i], now);
-        stirred[i] = anew || memcmp(x, now, sizeof now) != 0 ? GXP_TOUCH_MOVED : 0;
-        memcpy(x, now, sizeof now);
-        for (k = 6; k < 9; k++) x[k] = 0;
-    }
     for (i = 0; i < s->facet_count; i++) {
-        static const uint32_t corner[3] = {0, 1, 2};
-        double x[9], n_area[3], longest = 0, *unit = body->touch.facing + 3 * (size_t)i;
+        double n_area[3];
+        float *facing = body->touch.facing + 4 * (size_t)i;
+        const double length = gxp_space_normal(&body->touch, &s->facets[i], n_area) ? sqrt(gxp_dot(n_area, n_area)) : 0;
         const int moves = gxp_facet_moves(&body->touch, &s->facets[i]);
-        for (n = 0; n < 3; n++) memcpy(x + 3 * n, moved + 9 * (size_t)s->facets[i].vertex[n], 3 * sizeof *x);
-        gxp_triangle_normal(x, corner, n_area);
-        for (n = 0; n < 3; n++) longest = fmax(longest, gxp_square_distance(x + 3 * n, x + 3 * ((n + 1) % 3)));
-        unit[0] = unit[1] = unit[2] = 0;
-        if (gxp_size(n_area) > GXP_TOUCH_THIN * longest) (void)gxp_unit(n_area, unit);
+        for (k = 0; k < 3; k++) facing[k] = length > 0 ? (float)(n_area[k] / length) : 0;
+        facing[3] = 0;
         for (n = 0; n < 3; n++) {
             for (k = 0; k < 3; k++) moved[9 * (size_t)s->facets[i].vertex[n] + 6 + (size_t)k] += n_area[k];
             if (moves) stirred[s->facets[i].vertex[n]] |= GXP_TOUCH_TURNED;
         }
     }
-    for (i = 0; i < s->vertex_count; i++) {
-        double unit[3] = {0, 0, 0};
-        (void)gxp_unit(moved + 9 * (size_t)i + 6, unit);
-        memcpy(moved + 9 * (size_t)i + 6, unit, sizeof unit);
-    }
+    for (i = 0; i < s->samples.count; i++) gxp_turn_vertex(&body->touch, s->samples.data[i]);
+    for (i = 1; i < s->sides.count; i += 2)
+        if (!(s->vertices[s->sides.data[i]].area > 0)) gxp_turn_vertex(&body->touch, s->sides.data[i]);
     for (i = 0; i < s->sides.count; i += 2) {
         double *tip = moved + 9 * (size_t)s->sides.data[i] + 6;
         const double *side = moved + 9 * (size_t)s->sides.data[i + 1] + 6;
@@ -13438,10 +13572,11 @@ static int gxp_meets(const gx_body *body, const gxp_touch_surface *s, double dt,
     const gxp_touch *t = &body->touch;
     const gxp_touch_vertex *v = &s->vertices[pair->sample];
     const gxp_touch_facet *f = &s->facets[pair->facet];
-    const double *x = t->moved + 9 * (size_t)pair->sample, *n = t->facing + 3 * (size_t)pair->facet, *corner[3];
-    const double facing = -gxp_dot(x + 6, n);
-    double p[3][3], y[3], d[3], height, time = 0, along, square, slack, reach;
+    const double *x = t->moved + 9 * (size_t)pair->sample, *n = pair->normal, *corner[3];
+    double p[3][3], y[3], d[3], facing, height, time = 0, along, square, slack, reach;
     int i, k;
+    if (!gxp_space_normal(t, f, pair->normal) || !gxp_unit(pair->normal, pair->normal)) return 0;
+    facing = -gxp_dot(x + 6, n);
     if (!(facing > GXP_TOUCH_FACING)) return 0;
     for (i = 0; i < 3; i++) {
         if (f->vertex[i] == pair->sample) return 0;
@@ -13458,7 +13593,6 @@ static int gxp_meets(const gx_body *body, const gxp_touch_surface *s, double dt,
     for (k = 0; k < 3; k++) {
         y[k] = pair->share[0] * p[0][k] + pair->share[1] * p[1][k] + pair->share[2] * p[2][k];
         d[k] = x[k] - pair->share[0] * corner[0][k] - pair->share[1] * corner[1][k] - pair->share[2] * corner[2][k];
-        pair->normal[k] = n[k];
     }
     if (!(height > 0)) pair->approach = gxp_approach_facet(x, corner, n);
     pair->gap = gxp_dot(d, n);
@@ -13506,72 +13640,125 @@ static void gxp_try_facet(const gx_body *body, const gxp_touch_surface *s, doubl
    of the last step as the first bound. What is left out cannot be met, or is further than what is found: so a sample
    meets the same facet as by trying all. */
 
-/* Several of four numbers at a time: gcc does not make vectors of loops that compare. GXP_EACH_LANE begins a loop over
-   them; GXP_LANE: those at work, of four doubles; GXP_FLAGS: likewise, of four integers, what GXP_ABOVE, with | & ~,
-   has told: 0 if it is not so. Vectors longer than the machine's would be compared number by number. x87 arithmetic
-   has none. */
-#if !defined(GXFEM_SCALAR) && !defined(GXFEM_INTRINSICS) && (defined(__SSE2_MATH__) || defined(__aarch64__)) &&        \
+/* Four numbers at a time, in single precision: gcc does not make vectors of loops that compare. GXP_EACH_LANE begins a
+   loop over them; GXP_LANE: those at work; GXP_FLAGS: likewise, of four integers, what GXP_ABOVE, with | & ~, has told:
+   0 if it is not so. x87 arithmetic has no vectors. */
+#if !defined(GXFEM_SCALAR) && !defined(GXFEM_INTRINSICS) &&                                                            \
+    (defined(__SSE2_MATH__) || defined(__aarch64__) || defined(__wasm_simd128__)) &&                                   \
     (defined(__clang__) || defined(__GNUC__))
-#ifdef __AVX__
-#define GXP_LANES 4u
+#define GXP_LANES 4
+typedef __attribute__((vector_size(16))) float gxp_lane_own;
+typedef __attribute__((vector_size(16), aligned(4), may_alias)) float gxp_lane;
+typedef __attribute__((vector_size(16), aligned(4), may_alias)) int32_t gxp_lane_flags;
+#define GXP_LANE(x)       (*(gxp_lane *)((x) + j))
+#define GXP_FLAGS(x)      (*(gxp_lane_flags *)((x) + j))
+#define GXP_ABOVE(a, b)   ((gxp_lane_flags)((a) > (b)))
+#define GXP_LANE_SIZE(a)  ((gxp_lane)((gxp_lane_flags)(a)&INT32_MAX))
+#define GXP_PICK(f, a, b) ((gxp_lane)(((f) & (gxp_lane_flags)(a)) | (~(f) & (gxp_lane_flags)(b))))
 #else
-#define GXP_LANES 2u
-#endif
-typedef __attribute__((vector_size(8 * GXP_LANES), aligned(8), may_alias)) double gxp_lane;
-typedef __attribute__((vector_size(8 * GXP_LANES), aligned(8), may_alias)) int64_t gxp_lane_flags;
-#define GXP_LANE(x)      (*(gxp_lane *)((x) + j))
-#define GXP_FLAGS(x)     (*(gxp_lane_flags *)((x) + j))
-#define GXP_ABOVE(a, b)  ((gxp_lane_flags)((a) > (b)))
-#define GXP_LANE_SIZE(a) ((gxp_lane)((gxp_lane_flags)(a)&INT64_MAX))
-#else
-#define GXP_LANES        1u
-typedef double gxp_lane;
-#define GXP_LANE(x)      ((x)[j])
-#define GXP_FLAGS(x)     ((x)[j])
-#define GXP_ABOVE(a, b)  (-(int64_t)((a) > (b)))
-#define GXP_LANE_SIZE(a) fabs(a)
+#define GXP_LANES         1
+typedef float gxp_lane;
+typedef int32_t gxp_lane_flags;
+#define GXP_LANE(x)       ((x)[j])
+#define GXP_FLAGS(x)      ((x)[j])
+#define GXP_ABOVE(a, b)   (-(int32_t)((a) > (b)))
+#define GXP_LANE_SIZE(a)  (float)fabs(a)
+#define GXP_PICK(f, a, b) ((float)gxp_choose(f, a, b))
 #endif
 #define GXP_EACH_LANE(j) for (j = 0; j < 4; j += GXP_LANES)
 
-/* Samples that are sought together, at most: those that leave out boxes together first, then those that list leaves
-   together. With half or twice of either a step takes up to 4 % longer. A cosine: how alike they face at rest */
-enum { GXP_TOUCH_MANY = 128, GXP_TOUCH_FEW = 32 };
-#define GXP_TOUCH_ALIKE 0.7
+/* Of each two the lesser and the greater one: SSE's own instructions, since gcc does not find them */
+static inline gxp_lane gxp_lane_least(gxp_lane a, gxp_lane b) {
+#if GXP_LANES == 4 && defined(__SSE2_MATH__)
+    return (gxp_lane)__builtin_ia32_minps((gxp_lane_own)a, (gxp_lane_own)b);
+#else
+    const gxp_lane_flags above = GXP_ABOVE(a, b);
+    return GXP_PICK(above, b, a);
+#endif
+}
+static inline gxp_lane gxp_lane_most(gxp_lane a, gxp_lane b) {
+#if GXP_LANES == 4 && defined(__SSE2_MATH__)
+    return (gxp_lane)__builtin_ia32_maxps((gxp_lane_own)a, (gxp_lane_own)b);
+#else
+    const gxp_lane_flags above = GXP_ABOVE(a, b);
+    return GXP_PICK(above, a, b);
+#endif
+}
 
-/* Adds a point or a direction to bounds. */
-static void gxp_add_to_bounds(const double *x, gxp_bounds *box) {
+/* Bounds of rounding in single precision: of a number, of a sum of a few products */
+#define GXP_TOUCH_ROUND 2.4e-7f
+#define GXP_TOUCH_BIT   2e-6f
+
+static void gxp_empty_span(gxp_touch_span *span) {
     int k;
-    for (k = 0; k < 3; k++) {
-        box->low[k] = gxp_less(x[k], box->low[k]);
-        box->high[k] = gxp_more(x[k], box->high[k]);
+    for (k = 0; k < 4; k++) {
+        span->low[k] = k < 3 ? GXP_TOUCH_BEYOND : 0;
+        span->high[k] = -span->low[k];
     }
 }
 
-/* Where a vertex is at the step's end if nothing changes its velocity */
-static void gxp_vertex_end(const double *moved, double dt, double end[3]) {
-    int k;
-    for (k = 0; k < 3; k++) end[k] = moved[k] + dt * moved[3 + k];
+static void gxp_empty_box(gxp_touch_box *box) {
+    gxp_empty_span(&box->from);
+    gxp_empty_span(&box->to);
+    gxp_empty_span(&box->normals);
 }
 
-/* The corners of a leaf's facets: their mean velocity, and how much those of one differ from it at most */
-static void gxp_fit_speed(const gxp_touch *t, const gxp_touch_surface *s, uint32_t leaf, gxp_touch_leaf *to) {
+/* Adds a place or a direction, or a span. */
+static void gxp_add_to_span(const float *low, const float *high, gxp_touch_span *to) {
+    uint32_t j;
+    GXP_EACH_LANE(j) {
+        GXP_LANE(to->low) = gxp_lane_least(GXP_LANE(to->low), GXP_LANE(low));
+        GXP_LANE(to->high) = gxp_lane_most(GXP_LANE(to->high), GXP_LANE(high));
+    }
+}
+
+static void gxp_add_box(const gxp_touch_box *box, gxp_touch_box *to) {
+    gxp_add_to_span(box->from.low, box->from.high, &to->from);
+    gxp_add_to_span(box->to.low, box->to.high, &to->to);
+    gxp_add_to_span(box->normals.low, box->normals.high, &to->normals);
+}
+
+/* Makes a span larger by what its numbers may be rounded. */
+static void gxp_widen_span(gxp_touch_span *span) {
+    uint32_t j;
+    GXP_EACH_LANE(j) {
+        GXP_LANE(span->low) -= GXP_TOUCH_ROUND * GXP_LANE_SIZE(GXP_LANE(span->low));
+        GXP_LANE(span->high) += GXP_TOUCH_ROUND * GXP_LANE_SIZE(GXP_LANE(span->high));
+    }
+}
+
+static void gxp_widen_box(gxp_touch_box *box) {
+    gxp_widen_span(&box->from);
+    gxp_widen_span(&box->to);
+    gxp_widen_span(&box->normals);
+}
+
+/* The corners of a leaf's facets: their mean way, how much those of one differ from it at most, and rounding */
+static void gxp_fit_ways(const gxp_touch *t, const gxp_touch_surface *s, uint32_t leaf, gxp_touch_leaf *to) {
     const uint32_t first = GXP_TOUCH_LEAF * leaf;
     const uint32_t count = s->facet_count - first < GXP_TOUCH_LEAF ? s->facet_count - first : GXP_TOUCH_LEAF;
-    double most = 0;
+    float most = 0, furthest = 0;
     uint32_t j, n;
     int k;
-    for (k = 0; k < 3; k++) to->speed[k] = 0;
-    for (j = 0; j < count; j++)
-        for (n = 0; n < 3; n++)
-            for (k = 0; k < 3; k++)
-                to->speed[k] += t->moved[9 * (size_t)s->facets[first + j].vertex[n] + 3 + (size_t)k] / (3 * count);
     for (j = 0; j < count; j++)
         for (n = 0; n < 3; n++) {
-            const double square =
-                gxp_square_distance(t->moved + 9 * (size_t)s->facets[first + j].vertex[n] + 3, to->speed);
-            most = square > most ? square : most;
+            const gxp_touch_place *x = &t->places[s->facets[first + j].vertex[n]];
+            for (k = 0; k < 3; k++) to->way[k] += (x->to[k] - x->from[k]) / (float)(3 * count);
         }
-    to->spread = sqrt(most);
+    for (j = 0; j < count; j++)
+        for (n = 0; n < 3; n++) {
+            const gxp_touch_place *x = &t->places[s->facets[first + j].vertex[n]];
+            float square = 0, far = 0;
+            for (k = 0; k < 3; k++) {
+                const float d = x->to[k] - x->from[k] - to->way[k];
+                square += d * d;
+                far += (float)fabs(x->from[k]) + (float)fabs(x->to[k]);
+            }
+            most = square > most ? square : most;
+            furthest = far > furthest ? far : furthest;
+        }
+    to->bit = GXP_TOUCH_BIT * furthest;
+    to->spread = (float)sqrt(most) + to->bit;
     to->fitted = 1;
 }
 
@@ -13580,44 +13767,47 @@ static void gxp_fit_leaf(const gxp_touch *t, const gxp_touch_surface *s, uint32_
     uint32_t j, n;
     int k;
     memset(to, 0, sizeof *to);
-    gxp_fit_speed(t, s, leaf, to);
+    gxp_fit_ways(t, s, leaf, to);
     for (j = 0; j < GXP_TOUCH_LEAF && GXP_TOUCH_LEAF * leaf + j < s->facet_count; j++) {
         const size_t facet = GXP_TOUCH_LEAF * (size_t)leaf + j;
-        const double *unit = t->facing + 3 * facet, *x[3];
-        for (n = 0; n < 3; n++) x[n] = t->moved + 9 * (size_t)s->facets[facet].vertex[n];
-        for (k = 0; k < 3; k++) to->normal[k][j] = unit[k];
-        to->height[j] = gxp_dot(unit, x[0]);
+        const float *facing = t->facing + 4 * facet;
+        const double unit[3] = {(double)facing[0], (double)facing[1], (double)facing[2]};
+        double x[3][3];
+        for (n = 0; n < 3; n++)
+            for (k = 0; k < 3; k++)
+                x[n][k] = t->moved[9 * (size_t)s->facets[facet].vertex[n] + (size_t)k] - t->origin[k];
+        for (k = 0; k < 3; k++) to->normal[k][j] = facing[k];
+        to->height[j] = (float)gxp_dot(unit, x[0]);
         for (n = 0; n < 3; n++) {
             const double *from = x[n], *end = x[(n + 1) % 3];
             const double edge[3] = {end[0] - from[0], end[1] - from[1], end[2] - from[2]};
-            double away[3], out[3] = {0, 0, 0};
-            gxp_cross(away, edge, unit);
-            (void)gxp_unit(away, out);
-            for (k = 0; k < 3; k++) to->out[n][k][j] = out[k];
-            to->reach[n][j] = gxp_dot(out, from);
+            double out[3];
+            gxp_cross(out, edge, unit);
+            for (k = 0; k < 3; k++) to->out[n][k][j] = (float)out[k];
+            to->length[n][j] = (float)sqrt(gxp_dot(edge, edge));
+            to->reach[n][j] = (float)gxp_dot(out, from);
         }
     }
 }
 
 /* Fits the box of a leaf to its facets: those from `first` to end - 1. */
-static void gxp_fit_box(const gxp_touch *t, const gxp_touch_surface *s, double dt, uint32_t first, uint32_t end,
+static void gxp_fit_box(const gxp_touch *t, const gxp_touch_surface *s, uint32_t first, uint32_t end,
                         gxp_touch_box *box) {
-    uint32_t j;
+    uint32_t i;
     int n;
-    for (j = first; j < end; j++) {
-        gxp_add_to_bounds(t->facing + 3 * (size_t)j, &box->normals);
+    for (i = first; i < end; i++) {
+        gxp_add_to_span(t->facing + 4 * (size_t)i, t->facing + 4 * (size_t)i, &box->normals);
         for (n = 0; n < 3; n++) {
-            const double *x = t->moved + 9 * (size_t)s->facets[j].vertex[n];
-            double to[3];
-            gxp_vertex_end(x, dt, to);
-            gxp_add_to_bounds(x, &box->from);
-            gxp_add_to_bounds(to, &box->to);
+            const gxp_touch_place *x = &t->places[s->facets[i].vertex[n]];
+            gxp_add_to_span(x->from, x->from, &box->from);
+            gxp_add_to_span(x->to, x->to, &box->to);
         }
     }
+    gxp_widen_box(box);
 }
 
 /* Fits the boxes to the facets. anew: none of them is fitted; else those in which nothing is stirred stay. */
-static void gxp_fit_facets(gx_body *body, const gxp_touch_surface *s, double dt, int anew) {
+static void gxp_fit_facets(gx_body *body, const gxp_touch_surface *s, int anew) {
     gxp_touch *t = &body->touch;
     uint32_t i, j;
     for (i = 2 * t->leaf_count - 1; i-- > 0;) {
@@ -13628,94 +13818,110 @@ static void gxp_fit_facets(gx_body *body, const gxp_touch_surface *s, double dt,
         box->stirred = anew || (inner && (t->boxes[2 * i + 1].stirred || t->boxes[2 * i + 2].stirred));
         for (j = first; j < end && !inner && !box->stirred; j++) box->stirred = gxp_facet_moves(t, &s->facets[j]);
         if (!box->stirred) continue;
-        gxp_empty_bounds(&box->from);
-        gxp_empty_bounds(&box->to);
-        gxp_empty_bounds(&box->normals);
-        for (j = 2 * i + 1; j <= 2 * i + 2 && inner; j++) {
-            gxp_add_bounds(&box->from, &t->boxes[j].from);
-            gxp_add_bounds(&box->to, &t->boxes[j].to);
-            gxp_add_bounds(&box->normals, &t->boxes[j].normals);
-        }
+        gxp_empty_box(box);
+        for (j = 2 * i + 1; j <= 2 * i + 2 && inner; j++) gxp_add_box(&t->boxes[j], box);
         if (inner || first >= s->facet_count) continue;
-        gxp_fit_box(t, s, dt, first, end, box);
+        gxp_fit_box(t, s, first, end, box);
         t->leaves[leaf].fitted = 0;
     }
 }
 
 /* The least and the most of products of numbers from two ranges */
-static void gxp_range_product(double a, double b, double c, double d, double *low, double *high) {
-    const double ac = a * c, ad = a * d, bc = b * c, bd = b * d;
-    const double least = gxp_less(ac, ad), most = gxp_choose(ac < ad, ad, ac), one = gxp_less(bc, bd),
-                 other = gxp_choose(bc < bd, bd, bc);
-    *low = gxp_less(least, one);
-    *high = gxp_choose(most < other, other, most);
+static void gxp_range_product(gxp_lane a, gxp_lane b, gxp_lane c, gxp_lane d, gxp_lane *low, gxp_lane *high) {
+    const gxp_lane ac = a * c, ad = a * d, bc = b * c, bd = b * d;
+    *low = gxp_lane_least(gxp_lane_least(ac, ad), gxp_lane_least(bc, bd));
+    *high = gxp_lane_most(gxp_lane_most(ac, ad), gxp_lane_most(bc, bd));
 }
 
-/* The squared distance of a box from samples within the step; GXP_TREE_BEYOND if it is above limit or if none of them
+/* The squared distance of a box from samples within the step; GXP_TOUCH_BEYOND if it is above limit or if none of them
    meets a facet there. A way y from a sample to the place of a facet that it meets has a height h = y.n over the
    sample, -ahead <= h <= slack, and |y - h n| <= beside + slant |h|. */
-static double gxp_box_gap(const gxp_touch_box *box, const gxp_touch_crowd *crowd, double limit) {
+static float gxp_box_gap(const gxp_touch_box *box, const gxp_touch_crowd *crowd, float limit) {
     const gxp_touch_box *own = &crowd->own;
-    double low[3], high[3], square = 0, facing = 0, least = 0, most = 0, width;
-    int k, far = 0;
-    for (k = 0; k < 3; k++) {
-        const double left = box->from.low[k] - own->from.high[k], right = box->from.high[k] - own->from.low[k];
-        const double left_end = box->to.low[k] - own->to.high[k], right_end = box->to.high[k] - own->to.low[k];
-        double gap;
-        low[k] = gxp_less(left, left_end);
-        high[k] = gxp_more(right, right_end);
-        gap = gxp_more(gxp_more(low[k], -high[k]), 0.0);
-        square += gap * gap;
+    const gxp_touch_span *n = &box->normals, *o = &own->normals;
+    const gxp_lane zero = {0};
+    float low[4], high[4], sum[4], facing[4], least[4], most[4], square, down, up, width, bit;
+    int32_t far[4];
+    uint32_t j;
+    GXP_EACH_LANE(j) {
+        const gxp_lane a = gxp_lane_least(GXP_LANE(box->from.low) - GXP_LANE(own->from.high),
+                                          GXP_LANE(box->to.low) - GXP_LANE(own->to.high));
+        const gxp_lane b = gxp_lane_most(GXP_LANE(box->from.high) - GXP_LANE(own->from.low),
+                                         GXP_LANE(box->to.high) - GXP_LANE(own->to.low));
+        const gxp_lane gap = gxp_lane_most(gxp_lane_most(a, -b), zero);
+        GXP_LANE(low) = a;
+        GXP_LANE(high) = b;
+        GXP_LANE(sum) = gap * gap;
     }
-    if (square > limit) return GXP_TREE_BEYOND;
-    for (k = 0; k < 3; k++) {
-        const double *n = box->normals.low + k, *m = box->normals.high + k;
-        double one, other;
-        gxp_range_product(own->normals.low[k], own->normals.high[k], *n, *m, &one, &other);
-        facing -= one;
-        gxp_range_product(low[k], high[k], *n, *m, &one, &other);
-        least += one;
-        most += other;
+    square = sum[0] + sum[1] + sum[2];
+    if (square > limit) return GXP_TOUCH_BEYOND;
+    GXP_EACH_LANE(j) {
+        gxp_lane a, b;
+        gxp_range_product(GXP_LANE(o->low), GXP_LANE(o->high), GXP_LANE(n->low), GXP_LANE(n->high), &a, &b);
+        GXP_LANE(facing) = a;
+        gxp_range_product(GXP_LANE(low), GXP_LANE(high), GXP_LANE(n->low), GXP_LANE(n->high), &a, &b);
+        GXP_LANE(least) = a;
+        GXP_LANE(most) = b;
+        GXP_LANE(sum) = gxp_lane_most(GXP_LANE(high), -GXP_LANE(low));
     }
-    if (facing < GXP_TOUCH_FACING * (1 - 1e-9)) return GXP_TREE_BEYOND;
-    least -= 1e-9 * crowd->size;
-    most += 1e-9 * crowd->size;
-    if (most < -crowd->ahead || (most < 0 && square > crowd->ahead * crowd->ahead)) return GXP_TREE_BEYOND;
-    least = least > -crowd->ahead ? least : -crowd->ahead;
-    most = most < crowd->slack ? most : crowd->slack;
-    width = crowd->beside + GXP_TOUCH_SLANT * (most > -least ? most : -least);
-    for (k = 0; k < 3; k++) {
-        double one, other;
-        gxp_range_product(least, most, box->normals.low[k], box->normals.high[k], &one, &other);
-        far |= (low[k] > other + width) | (high[k] < one - width);
+    if (-(facing[0] + facing[1] + facing[2]) < (float)GXP_TOUCH_FACING - GXP_TOUCH_BIT) return GXP_TOUCH_BEYOND;
+    bit = GXP_TOUCH_BIT * (sum[0] + sum[1] + sum[2]);
+    down = least[0] + least[1] + least[2] - bit;
+    up = most[0] + most[1] + most[2] + bit;
+    if (up < -crowd->ahead || (up < 0 && square > crowd->ahead * crowd->ahead)) return GXP_TOUCH_BEYOND;
+    down = down > -crowd->ahead ? down : -crowd->ahead;
+    up = up < crowd->slack ? up : crowd->slack;
+    width = crowd->beside + (float)GXP_TOUCH_SLANT * (up > -down ? up : -down) + bit;
+    GXP_EACH_LANE(j) {
+        const gxp_lane lowest = zero + down, highest = zero + up;
+        gxp_lane a, b;
+        gxp_range_product(lowest, highest, GXP_LANE(n->low), GXP_LANE(n->high), &a, &b);
+        GXP_FLAGS(far) = GXP_ABOVE(GXP_LANE(low), b + width) | GXP_ABOVE(a - width, GXP_LANE(high));
     }
-    return far ? GXP_TREE_BEYOND : square;
+    return (far[0] | far[1] | far[2]) != 0 ? GXP_TOUCH_BEYOND : square;
 }
 
 /* Starts a crowd without samples. */
 static void gxp_start_crowd(gxp_touch_crowd *crowd) {
-    gxp_empty_bounds(&crowd->own.from);
-    gxp_empty_bounds(&crowd->own.to);
-    gxp_empty_bounds(&crowd->own.normals);
-    crowd->slack = crowd->ahead = crowd->beside = crowd->size = 0;
+    memset(crowd, 0, sizeof *crowd);
+    gxp_empty_box(&crowd->own);
 }
 
-/* Adds a sample to a crowd. */
-static void gxp_join_crowd(const gxp_touch *t, const gxp_touch_surface *s, double dt, uint32_t sample,
-                           gxp_touch_crowd *crowd) {
-    const gxp_touch_vertex *v = &s->vertices[sample];
-    const double *x = t->moved + 9 * (size_t)sample, more = 1 + 1e-9;
-    const double slack = gxp_touch_slack(t, v) * more, ahead = gxp_touch_ahead(v) * more,
-                 beside = gxp_touch_aside(v) + 1e-9 * v->size;
-    double end[3];
-    gxp_vertex_end(x, dt, end);
-    gxp_add_to_bounds(x, &crowd->own.from);
-    gxp_add_to_bounds(end, &crowd->own.to);
-    gxp_add_to_bounds(x + 6, &crowd->own.normals);
-    crowd->size = GXP_MOST(crowd->size, v->size);
-    crowd->slack = GXP_MOST(crowd->slack, slack);
-    crowd->ahead = GXP_MOST(crowd->ahead, ahead);
-    crowd->beside = GXP_MOST(crowd->beside, beside);
+/* Adds samples to a crowd. */
+static void gxp_join_crowds(const gxp_touch_crowd *some, gxp_touch_crowd *crowd) {
+    gxp_add_box(&some->own, &crowd->own);
+    crowd->slack = GXP_MOST(crowd->slack, some->slack);
+    crowd->ahead = GXP_MOST(crowd->ahead, some->ahead);
+    crowd->beside = GXP_MOST(crowd->beside, some->beside);
+}
+
+/* The first sample of few, in the list of samples */
+static uint32_t gxp_first_of(const gxp_touch_surface *s, uint32_t few) {
+    return few > 0 ? s->crowds.data[few - 1] >> 1 : 0;
+}
+
+/* Fits few samples' crowd to them. */
+static void gxp_fit_crowd(const gxp_touch *t, const gxp_touch_surface *s, uint32_t few, gxp_touch_crowd *crowd) {
+    double slack = 0, ahead = 0, beside = 0;
+    uint32_t i;
+    gxp_start_crowd(crowd);
+    for (i = gxp_first_of(s, few); i < s->crowds.data[few] >> 1; i++) {
+        const uint32_t sample = s->samples.data[i];
+        const gxp_touch_vertex *v = &s->vertices[sample];
+        const double *n = t->moved + 9 * (size_t)sample + 6;
+        const float normal[4] = {(float)n[0], (float)n[1], (float)n[2], 0};
+        const double one = gxp_touch_slack(t, v), two = gxp_touch_ahead(v), three = gxp_touch_aside(v);
+        gxp_add_to_span(t->places[sample].from, t->places[sample].from, &crowd->own.from);
+        gxp_add_to_span(t->places[sample].to, t->places[sample].to, &crowd->own.to);
+        gxp_add_to_span(normal, normal, &crowd->own.normals);
+        slack = GXP_MOST(slack, one);
+        ahead = GXP_MOST(ahead, two);
+        beside = GXP_MOST(beside, three);
+    }
+    gxp_widen_box(&crowd->own);
+    crowd->slack = (float)slack * (1 + GXP_TOUCH_BIT);
+    crowd->ahead = (float)ahead * (1 + GXP_TOUCH_BIT);
+    crowd->beside = (float)beside * (1 + GXP_TOUCH_BIT);
 }
 
 /* Finds the boxes in and below those of `from`, or below the root, that may hold what a crowd meets: those of a level
@@ -13723,7 +13929,7 @@ static void gxp_join_crowd(const gxp_touch *t, const gxp_touch_surface *s, doubl
 static gx_result gxp_narrow_boxes(gx_body *body, const gxp_touch_crowd *crowd, const gxp_words *from, uint32_t level,
                                   int stirred, gxp_words *found) {
     const gxp_touch_box *boxes = body->touch.boxes;
-    const double limit = crowd->slack * crowd->slack;
+    const float limit = crowd->slack * crowd->slack * (1 + GXP_TOUCH_BIT);
     uint32_t stack[64], count, i;
     gx_result result = GX_OK;
     found->count = 0;
@@ -13769,63 +13975,77 @@ static size_t gxp_passed_stride(const gxp_touch *t) { return ((size_t)t->near.co
 /* The boxes of touch.near from the step's start to its end, as a crowd sees them that moves by `shift` within the step:
    touch.passed, low[3] and high[3], each of all boxes; behind the last ones some that nothing reaches. Then the boxes
    in which samples are that meet a facet in them: wider by the way from a sample to it, see gxp_box_gap. */
-static gx_result gxp_list_passed(gx_body *body, const gxp_touch_crowd *crowd, const double shift[3]) {
+static gx_result gxp_list_passed(gx_body *body, const gxp_touch_crowd *crowd, const float shift[4]) {
     gxp_touch *t = &body->touch;
     const size_t n = gxp_passed_stride(t);
-    const double width = crowd->beside + GXP_TOUCH_SLANT * GXP_MOST(crowd->slack, crowd->ahead) + 1e-9 * crowd->size;
+    const gxp_lane zero = {0};
+    const float width = crowd->beside + (float)GXP_TOUCH_SLANT * GXP_MOST(crowd->slack, crowd->ahead);
     size_t i;
+    uint32_t j;
     int k;
     const gx_result result =
         gxp_reserve(&body->config.allocator, &t->passed, sizeof *t->passed, 0, &t->passed_capacity, 12 * n);
     for (i = 0; i < t->near.count && result == GX_OK; i++) {
         const gxp_touch_box *box = &t->boxes[t->near.data[i]];
-        for (k = 0; k < 3; k++) {
-            const double low = box->to.low[k] - shift[k], high = box->to.high[k] - shift[k];
-            double *side = t->passed + n * (size_t)k + i, least, most;
-            gxp_range_product(-crowd->ahead, crowd->slack, box->normals.low[k], box->normals.high[k], &least, &most);
-            side[0] = box->from.low[k] < low ? box->from.low[k] : low;
-            side[3 * n] = box->from.high[k] > high ? box->from.high[k] : high;
-            side[6 * n] = side[0] - most - width;
-            side[9 * n] = side[3 * n] - least + width;
+        float side[4][4];
+        GXP_EACH_LANE(j) {
+            const gxp_lane low = gxp_lane_least(GXP_LANE(box->from.low), GXP_LANE(box->to.low) - GXP_LANE(shift)),
+                           high = gxp_lane_most(GXP_LANE(box->from.high), GXP_LANE(box->to.high) - GXP_LANE(shift));
+            gxp_lane least, most;
+            gxp_range_product(zero - crowd->ahead, zero + crowd->slack, GXP_LANE(box->normals.low),
+                              GXP_LANE(box->normals.high), &least, &most);
+            GXP_LANE(side[0]) = low;
+            GXP_LANE(side[1]) = high;
+            GXP_LANE(side[2]) = low - most - width;
+            GXP_LANE(side[3]) = high - least + width;
         }
+        for (k = 0; k < 12; k++) t->passed[n * (size_t)k + i] = side[k / 3][k % 3];
     }
     for (; i < n && result == GX_OK; i++)
-        for (k = 0; k < 12; k++) t->passed[n * (size_t)k + i] = k % 6 < 3 ? GXP_TREE_ALL : -GXP_TREE_ALL;
+        for (k = 0; k < 12; k++) t->passed[n * (size_t)k + i] = k % 6 < 3 ? GXP_TOUCH_BEYOND : -GXP_TOUCH_BEYOND;
     return result;
 }
 
 /* How far the i-th box of touch.passed is from what is between two corners, along the axis along which it is furthest
  */
-static double gxp_passed_gap(const gxp_touch *t, size_t i, const double from[3], const double to[3]) {
+static float gxp_passed_gap(const gxp_touch *t, size_t i, const float from[3], const float to[3]) {
     const size_t n = gxp_passed_stride(t);
-    const double *side = t->passed + i;
-    double gap = -GXP_TREE_ALL;
+    const float *side = t->passed + i;
+    float gap = -GXP_TOUCH_BEYOND;
     int k;
     for (k = 0; k < 3; k++, side += n) {
-        const double left = side[0] - to[k], right = from[k] - side[3 * n], most = GXP_MOST(left, right);
+        const float left = side[0] - to[k], right = from[k] - side[3 * n], most = GXP_MOST(left, right);
         gap = GXP_MOST(gap, most);
     }
     return gap;
 }
 
+/* A bound of rounding beside a sample, m */
+static float gxp_sample_bit(const gxp_touch_vertex *v, const gxp_touch_place *x) {
+    float far = (float)v->size;
+    int k;
+    for (k = 0; k < 3; k++) far += (float)fabs(x->from[k]) + (float)fabs(x->to[k]);
+    return GXP_TOUCH_BIT * far;
+}
+
 /* Finds the leaves of touch.near that a sample may meet: `kept`, with the nearest one first. gaps: how far each is at
    least; at most `reach` if the sample is known to meet something so near, or else as far as the crowd's ways to facets
-   are. Returns how many */
-static uint32_t gxp_keep_leaves(const gxp_touch *t, const double *x, double dt, const double shift[3], int known,
-                                double reach, uint32_t *kept, double *gaps) {
+   are. bit: see gxp_sample_bit. Returns how many */
+static uint32_t gxp_keep_leaves(const gxp_touch *t, const gxp_touch_place *x, const float shift[4], int known,
+                                float reach, float bit, uint32_t *kept, float *gaps) {
     const size_t n = gxp_passed_stride(t);
-    const double *side = t->passed + (known ? 0 : 6 * n), more = known ? reach : 0;
-    double from[3], to[3];
+    const float *side = t->passed + (known ? 0 : 6 * n), more = known ? reach + bit : bit;
+    float from[3], to[3];
     uint32_t count = 0, first = 0;
     size_t i, j;
     int k;
     for (k = 0; k < 3; k++) {
-        const double end = x[k] + dt * x[3 + k] - shift[k];
-        from[k] = (x[k] < end ? x[k] : end) - more;
-        to[k] = (x[k] > end ? x[k] : end) + more;
+        const float end = x->to[k] - shift[k];
+        from[k] = (x->from[k] < end ? x->from[k] : end) - more;
+        to[k] = (x->from[k] > end ? x->from[k] : end) + more;
     }
     for (i = 0; i < n; i += 4, side += 4) {
-        int64_t far[4];
+        int32_t far[4];
         GXP_EACH_LANE(j)
         GXP_FLAGS(far) = GXP_ABOVE(GXP_LANE(side), to[0]) | GXP_ABOVE(from[0], GXP_LANE(side + 3 * n)) |
                          GXP_ABOVE(GXP_LANE(side + n), to[1]) | GXP_ABOVE(from[1], GXP_LANE(side + 4 * n)) |
@@ -13836,13 +14056,13 @@ static uint32_t gxp_keep_leaves(const gxp_touch *t, const double *x, double dt, 
         }
     }
     for (i = 0; i < count; i++) {
-        gaps[i] = gxp_passed_gap(t, kept[i], from, to) + more;
+        gaps[i] = gxp_passed_gap(t, kept[i], from, to) + more - bit;
         kept[i] = t->near.data[kept[i]];
         if (gaps[i] < gaps[first]) first = (uint32_t)i;
     }
     if (first > 0) {
         const uint32_t leaf = kept[first];
-        const double gap = gaps[first];
+        const float gap = gaps[first];
         kept[first] = kept[0];
         gaps[first] = gaps[0];
         kept[0] = leaf;
@@ -13852,7 +14072,7 @@ static uint32_t gxp_keep_leaves(const gxp_touch *t, const double *x, double dt, 
 }
 
 /* Which of a leaf's facets are not far, as bits? */
-static uint32_t gxp_facet_bits(const int64_t far[GXP_TOUCH_LEAF]) {
+static uint32_t gxp_facet_bits(const int32_t far[GXP_TOUCH_LEAF]) {
     uint32_t j, bits = 0;
     for (j = 0; j < GXP_TOUCH_LEAF; j++) bits |= (uint32_t)(far[j] == 0) << j;
     return bits;
@@ -13862,49 +14082,59 @@ static uint32_t gxp_facet_bits(const int64_t far[GXP_TOUCH_LEAF]) {
    meets faces it; the height over the facet's plane is in bounds; and the sample is hardly beside the facet. What is in
    front of a facet moves before they meet, relative to the facet. */
 static uint32_t gxp_facets_ahead(const gxp_touch *t, const gxp_touch_leaf *leaf, const gxp_touch_vertex *v,
-                                 const double *x, double dt, double near) {
-    const double bit = 1e-9 * v->size, depth = t->desc.depth * v->size + bit, ahead = GXP_TOUCH_NEAR * v->size + bit;
-    const double spread = dt * leaf->spread, beside = gxp_touch_aside(v) + bit;
-    const double way[3] = {dt * (leaf->speed[0] - x[3]), dt * (leaf->speed[1] - x[4]), dt * (leaf->speed[2] - x[5])};
-    double height[GXP_TOUCH_LEAF];
-    int64_t far[GXP_TOUCH_LEAF];
-    uint32_t n, j;
+                                 uint32_t sample, double near) {
+    const gxp_touch_place *place = &t->places[sample];
+    const float *x = place->from, bit = gxp_sample_bit(v, place) + leaf->bit;
+    const float depth = (float)(t->desc.depth * v->size) + bit, ahead = (float)(GXP_TOUCH_NEAR * v->size) + bit;
+    const float spread = leaf->spread, beside = (float)gxp_touch_aside(v) + bit, limit = (float)near + bit;
+    const float slant = (float)GXP_TOUCH_SLANT * (1 + GXP_TOUCH_BIT);
+    float way[3], n[3], height[GXP_TOUCH_LEAF];
+    int32_t far[GXP_TOUCH_LEAF];
+    uint32_t e, j;
+    int k;
+    for (k = 0; k < 3; k++) {
+        way[k] = leaf->way[k] - (place->to[k] - x[k]);
+        n[k] = (float)t->moved[9 * (size_t)sample + 6 + (size_t)k];
+    }
     GXP_EACH_LANE(j) {
         const gxp_lane a = GXP_LANE(leaf->normal[0]), b = GXP_LANE(leaf->normal[1]), c = GXP_LANE(leaf->normal[2]);
         const gxp_lane h = a * x[0] + b * x[1] + c * x[2] - GXP_LANE(leaf->height);
         const gxp_lane end = h - (a * way[0] + b * way[1] + c * way[2] + spread);
-        GXP_FLAGS(far) = GXP_ABOVE(a * x[6] + b * x[7] + c * x[8], -GXP_TOUCH_FACING * (1 - 1e-9)) |
-                         (GXP_ABOVE(h, ahead) & GXP_ABOVE(end, ahead)) | GXP_ABOVE(-h, depth) | GXP_ABOVE(h, near) |
-                         GXP_ABOVE(-h, near);
+        GXP_FLAGS(far) = GXP_ABOVE(a * n[0] + b * n[1] + c * n[2], GXP_TOUCH_BIT - (float)GXP_TOUCH_FACING) |
+                         (GXP_ABOVE(h, ahead) & GXP_ABOVE(end, ahead)) | GXP_ABOVE(-h, depth) | GXP_ABOVE(h, limit) |
+                         GXP_ABOVE(-h, limit);
         GXP_LANE(height) = h;
     }
     if (gxp_facet_bits(far) == 0) return 0;
-    for (n = 0; n < 3; n++) GXP_EACH_LANE(j) {
-            const gxp_lane a = GXP_LANE(leaf->out[n][0]), b = GXP_LANE(leaf->out[n][1]), c = GXP_LANE(leaf->out[n][2]);
-            const gxp_lane h = GXP_LANE(height), wide = beside + GXP_TOUCH_SLANT * GXP_LANE_SIZE(h);
-            const gxp_lane out = a * x[0] + b * x[1] + c * x[2] - GXP_LANE(leaf->reach[n]) - wide;
-            const gxp_lane end = out - (a * way[0] + b * way[1] + c * way[2] + (1 + GXP_TOUCH_SLANT) * spread);
-            GXP_FLAGS(far) |= GXP_ABOVE(out, 0.0) & (~GXP_ABOVE(h, 0.0) | GXP_ABOVE(end, 0.0));
+    for (e = 0; e < 3; e++) GXP_EACH_LANE(j) {
+            const gxp_lane a = GXP_LANE(leaf->out[e][0]), b = GXP_LANE(leaf->out[e][1]), c = GXP_LANE(leaf->out[e][2]);
+            const gxp_lane h = GXP_LANE(height), wide = beside + slant * GXP_LANE_SIZE(h);
+            const gxp_lane length = GXP_LANE(leaf->length[e]), reach = GXP_LANE(leaf->reach[e]);
+            const gxp_lane out = a * x[0] + b * x[1] + c * x[2] - reach - length * wide;
+            const gxp_lane end = out - (a * way[0] + b * way[1] + c * way[2] + length * ((1 + slant) * spread));
+            GXP_FLAGS(far) |= GXP_ABOVE(out, 0.0f) & (~GXP_ABOVE(h, -bit) | GXP_ABOVE(end, 0.0f));
         }
     return gxp_facet_bits(far);
 }
 
 /* Finds the facet that a vertex meets among those of touch.near. best: its vertex, and a facet that it meets or
    GXP_NONE; receives the best one. What is found leaves out all that is further. */
-static void gxp_seek_facet(const gx_body *body, const gxp_touch_surface *s, double dt, const double shift[3],
+static void gxp_seek_facet(const gx_body *body, const gxp_touch_surface *s, double dt, const float shift[4],
                            gxp_touch_pair *best) {
     const gxp_touch *t = &body->touch;
     const gxp_touch_vertex *v = &s->vertices[best->sample];
-    const double *x = t->moved + 9 * (size_t)best->sample, slack = gxp_touch_slack(t, v) * (1 + 1e-9);
+    const gxp_touch_place *place = &t->places[best->sample];
+    const double slack = gxp_touch_slack(t, v) * (1 + 1e-9);
+    const float bit = gxp_sample_bit(v, place);
     double near = gxp_pair_slack(s, best, slack);
     uint32_t *kept = t->kept_leaves.data, i, bits, facet;
     const uint32_t count =
-        gxp_keep_leaves(t, x, dt, shift, best->facet != GXP_NONE, near + 1e-9 * v->size, kept, t->gaps);
+        gxp_keep_leaves(t, place, shift, best->facet != GXP_NONE, (float)near + bit, bit, kept, t->gaps);
     for (i = 0; i < count; i++) {
         const uint32_t leaf = kept[i] + 1 - t->leaf_count;
-        if (t->gaps[i] > near + 1e-9 * v->size) continue;
+        if (t->gaps[i] > (float)near + bit) continue;
         if (!t->leaves[leaf].fitted) gxp_fit_leaf(t, s, leaf, &t->leaves[leaf]);
-        bits = gxp_facets_ahead(t, &t->leaves[leaf], v, x, dt, near);
+        bits = gxp_facets_ahead(t, &t->leaves[leaf], v, best->sample, near);
         for (facet = GXP_TOUCH_LEAF * leaf; bits > 0; bits >>= 1, facet++)
             if (bits & 1 && facet != best->facet) {
                 gxp_try_facet(body, s, dt, facet, best);
@@ -13913,29 +14143,29 @@ static void gxp_seek_facet(const gx_body *body, const gxp_touch_surface *s, doub
     }
 }
 
-/* Finds the facets that a few samples meet: surface.guesses. touch.crowd: boxes in which they are. What they met when
+/* Finds the facets that few samples meet: surface.guesses. touch.crowd: boxes in which they are. What they met when
    they were sought last comes first. */
-static gx_result gxp_seek_few(gx_body *body, const gxp_touch_surface *s, double dt, const uint32_t *samples,
-                              uint32_t count) {
+static gx_result gxp_seek_few(gx_body *body, const gxp_touch_surface *s, double dt, uint32_t few) {
     gxp_touch *t = &body->touch;
+    const uint32_t first = gxp_first_of(s, few), count = (s->crowds.data[few] >> 1) - first;
+    const uint32_t *samples = s->samples.data + first;
     gxp_touch_pair best[GXP_TOUCH_FEW];
-    gxp_touch_crowd crowd;
-    double slack = 0, shift[3];
+    gxp_touch_crowd crowd = t->crowds[few];
+    const gxp_touch_span *from = &crowd.own.from, *to = &crowd.own.to;
+    double slack = 0;
+    float shift[4];
     uint32_t i;
     int k;
     gx_result result;
-    gxp_start_crowd(&crowd);
     for (i = 0; i < count; i++) {
         const uint32_t guess = s->guesses.data[samples[i]];
         best[i] = gxp_no_pair(samples[i]);
-        gxp_join_crowd(t, s, dt, samples[i], &crowd);
         if (guess != GXP_NONE) gxp_try_facet(body, s, dt, guess, &best[i]);
         slack = fmax(slack, gxp_pair_slack(s, &best[i], gxp_touch_slack(t, &s->vertices[samples[i]])));
     }
-    crowd.slack = slack * (1 + 1e-9);
+    crowd.slack = (float)slack * (1 + GXP_TOUCH_BIT);
     result = gxp_narrow_boxes(body, &crowd, &t->crowd, t->leaf_count, 0, &t->near);
-    for (k = 0; k < 3; k++)
-        shift[k] = 0.5 * (crowd.own.to.low[k] + crowd.own.to.high[k] - crowd.own.from.low[k] - crowd.own.from.high[k]);
+    for (k = 0; k < 4; k++) shift[k] = 0.5f * (to->low[k] + to->high[k] - from->low[k] - from->high[k]);
     if (result == GX_OK) result = gxp_start_words(body, &t->kept_leaves, t->near.count + 1);
     if (result == GX_OK)
         result = gxp_reserve(&body->config.allocator, &t->gaps, sizeof *t->gaps, 0, &t->gap_capacity,
@@ -13948,50 +14178,47 @@ static gx_result gxp_seek_few(gx_body *body, const gxp_touch_surface *s, double 
     return result;
 }
 
-/* How many of the samples from `first` on, at most `most`, are of one piece and face alike? */
-static uint32_t gxp_crowd_size(const gxp_touch_surface *s, const uint32_t *samples, uint32_t left, uint32_t most) {
-    const gxp_touch_vertex *v = &s->vertices[samples[0]];
+/* Is one of few samples stirred? */
+static int gxp_few_stir(const gxp_touch *t, const gxp_touch_surface *s, uint32_t few) {
     uint32_t i;
-    for (i = 1; i < left && i < most; i++) {
-        const gxp_touch_vertex *w = &s->vertices[samples[i]];
-        if (v->fragment != w->fragment || gxp_dot(v->normal, w->normal) < GXP_TOUCH_ALIKE) break;
-    }
-    return i;
+    for (i = gxp_first_of(s, few); i < s->crowds.data[few] >> 1; i++)
+        if (t->stirred.data[s->samples.data[i]]) return 1;
+    return 0;
 }
 
-/* Is nothing stirred of samples and of what they met in the last search? */
-static int gxp_crowd_rests(const gxp_touch *t, const gxp_touch_surface *s, const uint32_t *samples, uint32_t count) {
+/* Is something stirred that few samples met in the last search? */
+static int gxp_met_stir(const gxp_touch *t, const gxp_touch_surface *s, uint32_t few) {
     uint32_t i;
-    for (i = 0; i < count; i++) {
-        const uint32_t guess = s->guesses.data[samples[i]];
-        if (t->stirred.data[samples[i]] || (guess != GXP_NONE && gxp_facet_moves(t, &s->facets[guess]))) return 0;
+    for (i = gxp_first_of(s, few); i < s->crowds.data[few] >> 1; i++) {
+        const uint32_t guess = s->guesses.data[s->samples.data[i]];
+        if (guess != GXP_NONE && gxp_facet_moves(t, &s->facets[guess])) return 1;
     }
-    return 1;
+    return 0;
 }
 
 /* Finds the facets that all samples meet. Boxes that none of many samples meets are left out for all of them at once,
    then those that none of a few meets. Samples that rest, and may meet nothing that does not, meet what they met. */
 static gx_result gxp_seek_facets(gx_body *body, const gxp_touch_surface *s, double dt) {
     gxp_touch *t = &body->touch;
-    const uint32_t count = s->samples.count, *samples = s->samples.data;
-    uint32_t first, i, n, few;
+    uint32_t first, few, last;
     gx_result result = GX_OK;
-    for (first = 0; first < count && result == GX_OK; first += n) {
+    for (first = 0; first < s->crowds.count && result == GX_OK; first = last + 1) {
         gxp_touch_crowd crowd;
+        int stirs = 0;
         gxp_start_crowd(&crowd);
-        n = gxp_crowd_size(s, samples + first, count - first, GXP_TOUCH_MANY);
-        for (i = first; i < first + n; i++) gxp_join_crowd(t, s, dt, samples[i], &crowd);
-        if (gxp_crowd_rests(t, s, samples + first, n)) {
+        for (last = first;; last++) {
+            const int stir = gxp_few_stir(t, s, last);
+            if (stir) gxp_fit_crowd(t, s, last, &t->crowds[last]);
+            stirs |= stir || gxp_met_stir(t, s, last);
+            gxp_join_crowds(&t->crowds[last], &crowd);
+            if (s->crowds.data[last] & 1) break;
+        }
+        if (!stirs) {
             result = gxp_narrow_boxes(body, &crowd, NULL, t->leaf_count, 1, &t->crowd);
             if (result != GX_OK || t->crowd.count == 0) continue;
         }
         result = gxp_narrow_boxes(body, &crowd, NULL, t->leaf_count / 8, 0, &t->crowd);
-        if (t->crowd.count == 0)
-            for (i = first; i < first + n; i++) s->guesses.data[samples[i]] = GXP_NONE;
-        for (i = 0; i < n && t->crowd.count > 0 && result == GX_OK; i += few) {
-            few = gxp_crowd_size(s, samples + first + i, n - i, GXP_TOUCH_FEW);
-            result = gxp_seek_few(body, s, dt, samples + first + i, few);
-        }
+        for (few = first; few <= last && result == GX_OK; few++) result = gxp_seek_few(body, s, dt, few);
     }
     return result;
 }
@@ -14009,9 +14236,10 @@ static const gxp_touch_vertex *gxp_sample_vertex(const gxp_touch_surface *s, uin
    not be where it was. */
 static void gxp_recall_state(const gxp_touch_surface *s, gxp_touch_pair *pair) {
     const double size = gxp_sample_vertex(s, pair->sample)->size;
+    const uint32_t name = gxp_sample_name(s, pair->sample);
     double best = GXP_TOUCH_SAME * size * GXP_TOUCH_SAME * size;
     uint32_t i;
-    for (i = gxp_first_state(s, pair->sample); i < s->state_count && s->states[i].sample == pair->sample; i++) {
+    for (i = gxp_first_state(s, name); i < s->state_count && s->states[i].sample == name; i++) {
         const gxp_touch_state *state = &s->states[i];
         const double d[3] = {state->rest[0] - pair->rest[0], state->rest[1] - pair->rest[1],
                              state->rest[2] - pair->rest[2]};
@@ -14091,9 +14319,10 @@ static gx_result gxp_seek_on_facet(gx_body *body, const gxp_touch_surface *s, do
 static gx_result gxp_wake_left(gx_body *body, const gxp_touch_surface *s, uint32_t sample, uint32_t first,
                                gx_failure *failure) {
     gxp_touch *t = &body->touch;
+    const uint32_t name = gxp_sample_name(s, sample);
     uint32_t i, j;
     gx_result result = GX_OK;
-    for (i = gxp_first_state(s, sample); i < s->state_count && s->states[i].sample == sample && result == GX_OK; i++) {
+    for (i = gxp_first_state(s, name); i < s->state_count && s->states[i].sample == name && result == GX_OK; i++) {
         gxp_touch_pair lost = gxp_no_pair(sample);
         if (s->states[i].other == GXP_NONE || !gxp_has_changed(t, s->states[i].other)) continue;
         for (j = first; j < t->found && t->pairs[j].other != s->states[i].other;) j++;
@@ -14109,14 +14338,14 @@ static gx_result gxp_wake_left(gx_body *body, const gxp_touch_surface *s, uint32
 static gx_result gxp_seek_colliders(gx_body *body, const gxp_touch_surface *s, double dt, uint32_t sample,
                                     uint32_t *next, gx_failure *failure) {
     gxp_touch *t = &body->touch;
-    const uint32_t first = t->found;
+    const uint32_t first = t->found, name = gxp_sample_name(s, sample);
     gx_result result = GX_OK;
-    while (*next < t->order.count && GXP_FIRST(t->order.data[*next]) == sample && result == GX_OK) {
+    while (*next < t->order.count && GXP_FIRST(t->order.data[*next]) == name && result == GX_OK) {
         gxp_touch_pair pair = gxp_no_pair(sample);
         double layers = 0;
         pair.collider = t->beside[GXP_SECOND(t->order.data[*next])].collider;
         pair.parts = t->beside[GXP_SECOND(t->order.data[*next])].parts;
-        for (; *next < t->order.count && GXP_FIRST(t->order.data[*next]) == sample &&
+        for (; *next < t->order.count && GXP_FIRST(t->order.data[*next]) == name &&
                t->beside[GXP_SECOND(t->order.data[*next])].collider == pair.collider;
              (*next)++)
             layers += t->beside[GXP_SECOND(t->order.data[*next])].layers;
@@ -14133,13 +14362,18 @@ static gx_result gxp_seek_colliders(gx_body *body, const gxp_touch_surface *s, d
 static void gxp_mark_held(gxp_touch *t, gxp_touch_surface *s) {
     enum { WAS = 2 };
     uint32_t i;
-    for (i = 0; i < s->vertex_count; i++) s->vertices[i].held = s->vertices[i].held ? WAS : 0;
+    for (i = 0; i < s->samples.count; i++) {
+        gxp_touch_vertex *v = &s->vertices[s->samples.data[i]];
+        v->held = v->held ? WAS : 0;
+    }
     for (i = 0; i < s->state_count; i++)
-        if (s->states[i].other == GXP_NONE && s->states[i].pressed > 0) s->vertices[s->states[i].sample].held |= 1;
-    for (i = 0; i < s->vertex_count; i++) {
-        const uint32_t held = s->vertices[i].held & 1;
-        if (held != s->vertices[i].held / WAS) t->stirred.data[i] |= GXP_TOUCH_TURNED;
-        s->vertices[i].held = held;
+        if (s->states[i].other == GXP_NONE && s->states[i].pressed > 0)
+            s->vertices[s->places.data[s->states[i].sample]].held |= 1;
+    for (i = 0; i < s->samples.count; i++) {
+        gxp_touch_vertex *v = &s->vertices[s->samples.data[i]];
+        const uint32_t held = v->held & 1;
+        if (held != v->held / WAS) t->stirred.data[s->samples.data[i]] |= GXP_TOUCH_TURNED;
+        v->held = held;
     }
 }
 
@@ -14153,17 +14387,18 @@ static gx_result gxp_seek_pairs(gx_body *body, const gxp_touch_surface *s, doubl
     if (result == GX_OK && t->filter == NULL) t->sought = s == &t->surfaces[0] ? 1 : 2;
     t->sought_dt = dt;
     for (i = 0; i < s->vertex_count + s->facet_count && result == GX_OK && s->facet_count > 0; i++) {
+        const uint32_t sample = gxp_named_sample(s, i);
         if (i >= s->vertex_count && next == t->order.count && at == s->state_count) break;
-        if (i < s->vertex_count && s->guesses.data[i] != GXP_NONE) {
-            gxp_touch_pair pair = gxp_no_pair(i);
-            pair.facet = s->guesses.data[i];
+        if (i < s->vertex_count && s->guesses.data[sample] != GXP_NONE) {
+            gxp_touch_pair pair = gxp_no_pair(sample);
+            pair.facet = s->guesses.data[sample];
             (void)gxp_meets(body, s, dt, &pair); /* as it was found */
             result = gxp_list_pair(body, s, &pair, failure);
         }
         while (at < s->state_count && s->states[at].sample < i) at++;
         if (result == GX_OK && ((next < t->order.count && GXP_FIRST(t->order.data[next]) == i) ||
                                 (at < s->state_count && s->states[at].sample == i)))
-            result = gxp_seek_colliders(body, s, dt, i, &next, failure);
+            result = gxp_seek_colliders(body, s, dt, sample, &next, failure);
     }
     return result;
 }
@@ -14180,8 +14415,9 @@ static gx_result gxp_surface_room(gx_body *body, const gxp_touch_surface *s) {
     for (t->leaf_count = 1; GXP_TOUCH_LEAF * (size_t)t->leaf_count < s->facet_count;) t->leaf_count *= 2;
     t->stirred.count = 0;
     if (result == GX_OK) result = gxp_words_room(body, &t->stirred, s->vertex_count);
-    if (result == GX_OK)
-        result = gxp_reserve(a, &t->facing, 3 * sizeof(double), 0, &t->facing_capacity, s->facet_count);
+    if (result == GX_OK) result = gxp_reserve(a, &t->facing, 4 * sizeof(float), 0, &t->facing_capacity, s->facet_count);
+    if (result == GX_OK) result = gxp_reserve(a, &t->places, sizeof *t->places, 0, &t->place_capacity, s->vertex_count);
+    if (result == GX_OK) result = gxp_reserve(a, &t->crowds, sizeof *t->crowds, 0, &t->crowd_capacity, s->crowds.count);
     if (result == GX_OK)
         result = gxp_reserve(a, &t->boxes, sizeof *t->boxes, 0, &t->box_capacity, 2 * (size_t)t->leaf_count);
     return result == GX_OK ? gxp_reserve(a, &t->leaves, sizeof *t->leaves, 0, &t->leaf_capacity,
@@ -14345,8 +14581,10 @@ static gx_result gxp_attach_contact(gx_body *body, const gx_step_desc *desc, gxs
     anew = body->touch.sought != (*surface == &body->touch.surfaces[0] ? 1u : 2u) || body->touch.filter != NULL ||
            body->touch.sought_dt < dt || body->touch.sought_dt > dt;
     body->touch.sought = 0; /* until this search has succeeded */
-    gxp_move_surface(body, *surface, anew);
-    gxp_fit_facets(body, *surface, dt, anew);
+    anew |= gxp_set_origin(body, *surface, anew);
+    gxp_place_vertices(body, *surface, dt, anew);
+    gxp_turn_surface(body, *surface);
+    gxp_fit_facets(body, *surface, anew);
     gxp_mark_held(&body->touch, *surface);
     result = gxp_seek_pairs(body, *surface, dt, failure);
     return result == GX_OK ? gxp_end(failure, gxp_join_pairs(body, *surface, dt, step)) : result;
@@ -14463,7 +14701,7 @@ static void gxp_keep_contact(gx_body *body, const gx_step_desc *desc, gxp_touch_
         pair->pressed = solved->stiffness > 0 ? fmax(0, solved->offset - pair->gap) : 0;
         memcpy(pair->slip, t->slips + 3 * ((size_t)t->given + i), sizeof pair->slip);
         if (!(pair->pressed > 0) && !(gxp_dot(pair->slip, pair->slip) > 0)) continue;
-        state.sample = pair->sample;
+        state.sample = gxp_sample_name(surface, pair->sample);
         state.other = pair->other;
         state.pressed = pair->pressed;
         memcpy(state.slip, pair->slip, sizeof state.slip);
@@ -21086,6 +21324,10 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_LINK_FACE
 #undef GXP_SEARCH_MARGIN
 #undef GXP_TOUCH_CREASE
+#undef GXP_TOUCH_BEYOND
+#undef GXP_TOUCH_FAR
+#undef GXP_TOUCH_ROUND
+#undef GXP_TOUCH_BIT
 #undef GXP_TOUCH_LEAF
 #undef GXP_TOUCH_MOVED
 #undef GXP_TOUCH_TURNED
@@ -21095,6 +21337,7 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_FLAGS
 #undef GXP_ABOVE
 #undef GXP_LANE_SIZE
+#undef GXP_PICK
 #undef GXP_MOST
 #undef GXP_TOUCH_EVEN
 #undef GXP_TOUCH_APART

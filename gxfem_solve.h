@@ -1698,7 +1698,8 @@ typedef struct gxsp_multigrid {
     uint8_t *dirty;   /* by node of level 1: some of its followers have been touched since the levels were made */
     gxsp_owned *mark; /* what pool has from here on depends on the pattern of level 1 */
     int fits;         /* the model has not been updated since the levels were made */
-    int joined;       /* level 1 has entries between the sides of pairs */
+    /* Level 1 has entries between the sides of those pairs: see gxsp_hash_sides; 0: it has none; 1: of others */
+    uint64_t joined;
     int chosen;       /* the preconditioner was chosen by the size of components */
     int used;         /* the levels precondition the solve at work */
     gxsp_fine *fine;  /* block_count: entries of the assembled matrix, levels[0]; NULL: matrix-free */
@@ -4982,6 +4983,23 @@ static uint32_t gxsp_pair_bases(const gxsp_system *system, const gxsp_term *term
     return count;
 }
 
+/* Hash of which copies present pairs have on which side; at least 2, or 0: there are no pairs */
+static uint64_t gxsp_hash_sides(const gxsp_system *system) {
+    uint64_t hash = 0;
+    size_t t;
+    uint32_t i;
+    for (t = 0; t < system->lasting->count; t++) {
+        const gxsp_term *term = &system->lasting->term[t];
+        const gxsp_share *share = system->lasting->share + term->first;
+        for (i = 0; i < term->count && term->spread > 0; i++) {
+            hash = (hash ^ (2 * (uint64_t)share[i].copy + (share[i].weight > 0))) * 0x9e3779b97f4a7c15u;
+            hash ^= hash >> 29;
+        }
+        if (term->spread > 0) hash |= 2;
+    }
+    return hash;
+}
+
 /* Lists the entries of level 1's matrix between the two sides of pairs. */
 static void gxsp_joint_pattern(const gxsp_system *system, gxsp_pool *scratch, gxsp_list *list) {
     uint32_t *last = (uint32_t *)gxsp_take(scratch, system->multigrid.levels[1].n, sizeof(uint32_t));
@@ -5248,7 +5266,8 @@ static void gxsp_first_pattern(gxsp_system *system, gxsp_pool *scratch, const gx
         if (chunk->pair_count > system->multigrid.pairs.most) system->multigrid.pairs.most = chunk->pair_count;
     }
     if (system->affine.count > 0) gxsp_nested_pattern(system, scratch, before ? dirty : NULL, &list);
-    if (system->multigrid.joined && !before) gxsp_joint_pattern(system, scratch, &list);
+    if (system->multigrid.joined > 0) system->multigrid.joined = before ? 1 : gxsp_hash_sides(system);
+    if (system->multigrid.joined > 1) gxsp_joint_pattern(system, scratch, &list);
     if (!scratch->failed)
         gxsp_rows_make(&system->multigrid.pool, scratch, &system->multigrid.levels[1], &list, before, dirty);
 }
@@ -10033,12 +10052,9 @@ static int gxsp_fit_levels(gxsp_system *system, gxsp_pass *linearised) {
  * 0: there was no memory, see gxsp_fit_levels. */
 static int gxsp_join_levels(gxsp_system *system) {
     gxsp_pool scratch = gxsp_pool_make(&system->pool.allocator);
-    int joins = 0;
-    size_t t;
-    if (system->affine.count == 0) return 1;
-    for (t = 0; t < system->lasting->count && !joins; t++) joins = system->lasting->term[t].spread > 0;
-    if (!joins && !system->multigrid.joined) return 1;
-    system->multigrid.joined = joins;
+    const uint64_t sides = gxsp_hash_sides(system);
+    if (system->affine.count == 0 || sides == system->multigrid.joined) return 1;
+    system->multigrid.joined = sides;
     gxsp_release_to(&system->multigrid.pool, system->multigrid.mark);
     gxsp_edges_make(system, &scratch);
     gxsp_pairs_make(system, &scratch);

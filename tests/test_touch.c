@@ -141,13 +141,12 @@ static gx_body *cut_cube(workload *w, size_t n, const double normal[3], double h
 static void try_plainly(const gx_body *body, const gxp_touch_surface *s, double dt, uint32_t facet,
                         gxp_touch_pair *best) {
     const gxp_touch *t = &body->touch;
-    const double *x = t->moved + 9 * (size_t)best->sample;
     gxp_touch_pair pair = gxp_no_pair(best->sample);
     gxp_touch_leaf leaf;
     pair.facet = facet;
     if (!gxp_meets(body, s, dt, &pair)) return;
     gxp_fit_leaf(t, s, facet / 4, &leaf);
-    ck_assert_uint_ne(gxp_facets_ahead(t, &leaf, &s->vertices[best->sample], x, dt,
+    ck_assert_uint_ne(gxp_facets_ahead(t, &leaf, &s->vertices[best->sample], best->sample,
                                        gxp_pair_slack(s, &pair, gxp_touch_slack(t, &s->vertices[best->sample]))) &
                           1u << facet % 4,
                       0);
@@ -160,11 +159,12 @@ static size_t search_both_ways(gx_body *body, double dt, uint64_t seed) {
     gxp_touch_surface *surface;
     gxs_step_desc none;
     size_t met = 0;
-    uint32_t v, f;
+    uint32_t i, f;
     memset(&none, 0, sizeof none);
     none.dt = dt;
     ck_assert_int_eq(gxp_attach_contact(body, &given, &none, &surface, NULL), GX_OK);
-    for (v = 0; v < surface->vertex_count; v++) {
+    for (i = 0; i < surface->vertex_count; i++) {
+        const uint32_t v = surface->places.data[i];
         gxp_touch_pair best = gxp_no_pair(v);
         if (!(surface->vertices[v].area > 0)) continue; /* no sample */
         for (f = 0; f < surface->facet_count; f++) try_plainly(body, surface, dt, f, &best);
