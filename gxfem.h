@@ -13005,6 +13005,12 @@ static int gxp_meets_deep(const gx_body *body, const double x[6], double size, d
     return 1;
 }
 
+/* The outward normal of a facet in space, of length 1, or 0 */
+static void gxp_facing(const gxp_touch *t, uint32_t facet, double n[3]) {
+    int k;
+    for (k = 0; k < 3; k++) n[k] = (double)t->facing[4 * (size_t)facet + (size_t)k];
+}
+
 /* Facets around a place in space */
 typedef struct gxp_setting {
     double x[3], reach; /* m */
@@ -13027,9 +13033,9 @@ static double gxp_way_to_facet(const gxp_touch *t, const gxp_touch_surface *s, c
 }
 
 static void gxp_try_nearest(const gxp_touch *t, const gxp_touch_surface *s, uint32_t facet, gxp_setting *a) {
-    const double *n = t->facing + 3 * (size_t)facet;
-    double to[3];
+    double to[3], n[3];
     const double square = gxp_way_to_facet(t, s, a, facet, to);
+    gxp_facing(t, facet, n);
     if (square > a->square * (1 + 1e-9) || gxp_dot(n, n) == 0) return;
     if (square < a->square * (1 - 1e-9)) a->in_front = 0;
     a->in_front |= gxp_dot(to, n) < 0;
@@ -13040,13 +13046,13 @@ static void gxp_try_nearest(const gxp_touch *t, const gxp_touch_surface *s, uint
 
 /* Adds a facet's normal to the mean if it is within reach. */
 static void gxp_add_normal(const gxp_touch *t, const gxp_touch_surface *s, uint32_t facet, gxp_setting *a) {
-    double to[3], n[3], far;
+    double to[3], n[3], facing[3], far;
     int k;
     if (s->facets[facet].fragment != s->facets[a->facet].fragment) return;
     far = sqrt(gxp_way_to_facet(t, s, a, facet, to)) / a->reach;
     gxp_facet_normal(s, &s->facets[facet], n);
-    for (k = 0; k < 3 && far < 1; k++)
-        a->mean[k] += (1 - far) * sqrt(gxp_dot(n, n)) * t->facing[3 * (size_t)facet + (size_t)k];
+    gxp_facing(t, facet, facing);
+    for (k = 0; k < 3 && far < 1; k++) a->mean[k] += (1 - far) * sqrt(gxp_dot(n, n)) * facing[k];
 }
 
 /* Calls a function for all facets in boxes that are not further away than reach. */
@@ -13056,11 +13062,12 @@ static void gxp_go_around(const gxp_touch *t, const gxp_touch_surface *s, gxp_se
     stack[count++] = 0;
     while (count > 0) {
         const uint32_t box = stack[--count];
-        const gxp_bounds *b = &t->boxes[box].from;
+        const gxp_touch_span *b = &t->boxes[box].from;
         double square = 0;
         int k;
         for (k = 0; k < 3; k++) {
-            const double beside = fmax(0, fmax(b->low[k] - a->x[k], a->x[k] - b->high[k]));
+            const double x = a->x[k] - t->origin[k],
+                         beside = fmax(0, fmax((double)b->low[k] - x, x - (double)b->high[k]));
             square += beside * beside;
         }
         if (!(square <= a->square)) continue;
@@ -13079,7 +13086,7 @@ static void gxp_go_around(const gxp_touch *t, const gxp_touch_surface *s, gxp_se
    way out is the mean one, so that it changes little from step to step. */
 static void gxp_judge_middle(const gxp_touch *t, const gxp_touch_surface *s, const double x[3], double half,
                              double *least, gxp_touch_deep *deep) {
-    const gxp_bounds *b = &t->boxes[0].from;
+    const gxp_touch_span *b = &t->boxes[0].from;
     gxp_setting a;
     double height;
     int k;
@@ -13088,7 +13095,8 @@ static void gxp_judge_middle(const gxp_touch *t, const gxp_touch_surface *s, con
     a.facet = GXP_NONE;
     a.square = GXP_TREE_ALL;
     for (k = 0; k < 3; k++)
-        if (x[k] < b->low[k] - *least || x[k] > b->high[k] + *least) return;
+        if (x[k] - t->origin[k] < (double)b->low[k] - *least || x[k] - t->origin[k] > (double)b->high[k] + *least)
+            return;
     gxp_go_around(t, s, &a, gxp_try_nearest);
     if (a.facet == GXP_NONE) return;
     height = a.in_front ? sqrt(a.square) : -sqrt(a.square);
@@ -13167,9 +13175,10 @@ static uint32_t gxp_deep_parts(const gxp_touch *t, const gxp_touch_surface *s, u
     const gx_collider *c = &t->colliders[collider];
     const gxp_touch_facet *f = &s->facets[facet];
     const double *out = t->deep[collider].out, *corner[3];
-    double beside[3], along, longest = 0;
+    double facing[3], beside[3], along, longest = 0;
     int i, k;
-    if (!(gxp_dot(t->facing + 3 * (size_t)facet, out) > 0)) return 0;
+    gxp_facing(t, facet, facing);
+    if (!(gxp_dot(facing, out) > 0)) return 0;
     for (i = 0; i < 3; i++) corner[i] = t->moved + 9 * (size_t)f->vertex[i];
     for (i = 0; i < 3; i++) {
         double edge[3];
@@ -14290,8 +14299,10 @@ static gx_result gxp_seek_on_facet(gx_body *body, const gxp_touch_surface *s, do
                                    gxp_touch_pair *pair, gx_failure *failure) {
     const gxp_touch_facet *f = &s->facets[pair->sample - s->vertex_count];
     const uint32_t parts = pair->parts;
+    double outward[3];
     uint32_t i, j, m;
     gx_result result = GX_OK;
+    gxp_facing(&body->touch, pair->sample - s->vertex_count, outward);
     for (i = 0; i <= parts; i++)
         for (j = 0; i + j <= parts && result == GX_OK; j++) {
             const int rims = (i == 0) + (j == 0) + (i + j == parts);
@@ -14306,9 +14317,7 @@ static gx_result gxp_seek_on_facet(gx_body *body, const gxp_touch_surface *s, do
                 for (m = 0; m < 6; m++) x[m] += pair->share[n] * body->touch.moved[9 * (size_t)f->vertex[n] + m];
                 for (m = 0; m < 3; m++) pair->rest[m] += pair->share[n] * s->vertices[f->vertex[n]].rest[m];
             }
-            if (gxp_meets_any(body, s, x, body->touch.facing + 3 * (size_t)(pair->sample - s->vertex_count), dt, pair,
-                              &wild))
-                result = gxp_list_pair(body, s, pair, failure);
+            if (gxp_meets_any(body, s, x, outward, dt, pair, &wild)) result = gxp_list_pair(body, s, pair, failure);
             if (wild) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "colliders.distance", pair->collider);
         }
     return result;

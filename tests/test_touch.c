@@ -330,6 +330,7 @@ START_TEST(colliders_are_found) {
             const uint32_t fine = parts > 1 ? parts : 12;
             uint32_t a, b, m;
             double x[9], n[3];
+            gxp_facing(&body->touch, f, n);
             for (a = 0; a <= fine; a++)
                 for (b = 0; a + b <= fine && parts != 1; b++) {
                     gxp_touch_pair pair = gxp_no_pair(surface->vertex_count + f);
@@ -338,8 +339,7 @@ START_TEST(colliders_are_found) {
                     pair.collider = c;
                     for (i = 0; i < 3; i++)
                         for (m = 0; m < 6; m++) at[m] += share[i] * body->touch.moved[9 * (size_t)facet->vertex[i] + m];
-                    if (!gxp_meets_any(body, surface, at, body->touch.facing + 3 * (size_t)f, none.dt, &pair, &wild))
-                        continue;
+                    if (!gxp_meets_any(body, surface, at, n, none.dt, &pair, &wild)) continue;
                     CHECK_SEED(parts > 1, seed);
                     for (i = 0; i < body->touch.found; i++)
                         if (body->touch.pairs[i].sample == pair.sample && body->touch.pairs[i].collider == c &&
