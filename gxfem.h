@@ -8,6 +8,7 @@
  *
  * In one source file: #define GXFEM_IMPLEMENTATION before #include "gxfem.h", and link with -lm. Everywhere else: the
  * #include alone. GXFEM_STATIC makes all functions static. All four headers must be there.
+ * GXFEM_SMALL: clang compiles all but steps and contact for size.
  *
  * One minute:
  *
@@ -943,9 +944,12 @@ extern "C" {
 #ifdef GXFEM_SCALAR
 #pragma clang attribute push(__attribute__((target("no-simd128"))), apply_to = function)
 #endif
+#if defined(GXFEM_SMALL) && defined(__clang__)
+#pragma clang attribute push(__attribute__((minsize)), apply_to = function)
+#endif
 
 /* COLD functions are seldom called: kept out of line and compiled for size. APART: out of line, so that their arrays
-   are not in the frame of what calls them. */
+   are not in the frame of what calls them, or so that there is one copy of them. */
 #if defined(__GNUC__) || defined(__clang__)
 #define GXP_COLD              __attribute__((cold, noinline))
 #define GXP_APART             __attribute__((noinline))
@@ -12169,6 +12173,10 @@ GXFEM_API gx_result gx_body_pick(gx_body *body, const double origin[3], const do
     return GX_OK;
 }
 
+#if defined(GXFEM_SMALL) && defined(__clang__)
+#pragma clang attribute pop
+#endif
+
 /* >>touch: the surface of contact ---------------------------------------------------------------------------------- */
 /* In: the cells. Out: samples and facets. Touches what a step with contact works with; the skin that the caller sees
    stays as it is. */
@@ -12922,7 +12930,7 @@ static gxp_approach gxp_make_approach(const gx_collider *c, const double x[6]) {
 }
 
 /* Does the sample come near its collider within dt? Goes along its way by steps no longer than the distance. */
-static int gxp_comes_near(const gx_collider *c, double size, double dt, gxp_approach *a) {
+static GXP_APART int gxp_comes_near(const gx_collider *c, double size, double dt, gxp_approach *a) {
     const double speed = sqrt(gxp_dot(a->motion, a->motion));
     int i, k;
     for (i = 0; i < GXP_TOUCH_ADVANCES; i++) {
@@ -12985,7 +12993,8 @@ static double gxp_collider_reach(const gx_collider *c) {
 /* Does a sample meet a collider that is deep in its piece? The sample is to be below the collider, seen along deep.out,
    however far above it is: it meets the first place of the collider on its way from there. The nearest place would be
    beside it, or above it: a small collider would part facets that are larger than it is, and be swallowed. */
-static int gxp_meets_deep(const gx_body *body, const double x[6], double size, double dt, gxp_touch_pair *pair) {
+static GXP_COLD int gxp_meets_deep(const gx_body *body, const double x[6], double size, double dt,
+                                   gxp_touch_pair *pair) {
     const gx_collider *c = &body->touch.colliders[pair->collider];
     gxp_approach a = gxp_make_approach(c, x), way = a;
     double out[3], length, above, approach;
@@ -13084,8 +13093,8 @@ static void gxp_go_around(const gxp_touch *t, const gxp_touch_surface *s, gxp_se
 
 /* Is a place that is the middle of a collider deep in a piece? *least: m: its height over the skin; receives it. The
    way out is the mean one, so that it changes little from step to step. */
-static void gxp_judge_middle(const gxp_touch *t, const gxp_touch_surface *s, const double x[3], double half,
-                             double *least, gxp_touch_deep *deep) {
+static GXP_COLD void gxp_judge_middle(const gxp_touch *t, const gxp_touch_surface *s, const double x[3], double half,
+                                      double *least, gxp_touch_deep *deep) {
     const gxp_touch_span *b = &t->boxes[0].from;
     gxp_setting a;
     double height;
@@ -13171,7 +13180,8 @@ static uint32_t gxp_facet_parts(const gx_body *body, const gxp_touch_surface *s,
 }
 
 /* The same if the collider is deep in the facet's piece: of what faces the way out, above or below the collider */
-static uint32_t gxp_deep_parts(const gxp_touch *t, const gxp_touch_surface *s, uint32_t facet, uint32_t collider) {
+static GXP_COLD uint32_t gxp_deep_parts(const gxp_touch *t, const gxp_touch_surface *s, uint32_t facet,
+                                        uint32_t collider) {
     const gx_collider *c = &t->colliders[collider];
     const gxp_touch_facet *f = &s->facets[facet];
     const double *out = t->deep[collider].out, *corner[3];
@@ -15146,6 +15156,10 @@ GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_ste
     if (result == GX_OK && report != NULL) report->seconds = gxp_step_seconds(body, desc) - start;
     return result;
 }
+
+#if defined(GXFEM_SMALL) && defined(__clang__)
+#pragma clang attribute push(__attribute__((minsize)), apply_to = function)
+#endif
 
 /* >>layers: the cells around a blade, and how they hang together --------------------------------------------------- */
 /* In: the strip between the fronts of a blade and its edge. Out: the cells within an element's size of it, with their
@@ -21438,6 +21452,9 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_TOOL_TRIANGLES
 #undef GXP_GRID_CUBES
 #undef GXP_GRID_MARGIN
+#if defined(GXFEM_SMALL) && defined(__clang__)
+#pragma clang attribute pop
+#endif
 #ifdef GXFEM_SCALAR
 #pragma clang attribute pop
 #endif

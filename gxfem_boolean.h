@@ -913,6 +913,9 @@ extern "C" {
 #ifdef GXFEM_SCALAR
 #pragma clang attribute push(__attribute__((target("no-simd128"))), apply_to = function)
 #endif
+#if defined(GXFEM_SMALL) && defined(__clang__)
+#pragma clang attribute push(__attribute__((minsize)), apply_to = function)
+#endif
 
 /* COLD and RARE functions are seldom called, and compiled for size. A RARE one may be inlined: where it has one caller,
    or where it is public and GXFEM_STATIC makes it inline. APART functions stay out of line: those with many callers,
@@ -15770,6 +15773,9 @@ GXFEM_API gx_result gxb_boolean_statistics(const gxb_boolean *b, gxb_statistics 
 #undef GXBP_VOLUME_ERROR
 #undef GXBP_MEND_REACH
 #undef GXBP_MEND_STEPS
+#if defined(GXFEM_SMALL) && defined(__clang__)
+#pragma clang attribute pop
+#endif
 #ifdef GXFEM_SCALAR
 #pragma clang attribute pop
 #endif

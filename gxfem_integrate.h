@@ -356,6 +356,9 @@ extern "C" {
 #ifdef GXFEM_SCALAR
 #pragma clang attribute push(__attribute__((target("no-simd128"))), apply_to = function)
 #endif
+#if defined(GXFEM_SMALL) && defined(__clang__)
+#pragma clang attribute push(__attribute__((minsize)), apply_to = function)
+#endif
 
 /* >>config: limits of rounding and of results ---------------------------------------------------------------------- */
 
@@ -1121,6 +1124,9 @@ GXFEM_API void gxi_face_mass_add(const double a[4], const double b[4], const dou
 #undef GXIP_FEW
 #undef GXIP_COLD
 #undef GXIP_EXPONENT_MAX
+#if defined(GXFEM_SMALL) && defined(__clang__)
+#pragma clang attribute pop
+#endif
 #ifdef GXFEM_SCALAR
 #pragma clang attribute pop
 #endif

@@ -10,21 +10,11 @@
      >>cutting    strokes, going back
      >>moving     a hand that pulls, steps */
 #define GXFEM_STATIC
-/* What the page loads should be small: what cuts is compiled for size alone. Steps with contact take the time of
- * frames.
- */
-#ifdef __wasm__
+#ifdef __wasm__ /* what the page loads should be small */
+#define GXFEM_SMALL
 #define EXPORT(name) __attribute__((export_name(#name), used))
-#pragma clang attribute push(__attribute__((minsize)), apply_to = function)
 #else
 #define EXPORT(name) /* bench/web.c has it as a part of a native program */
-#endif
-#define GXFEM_BOOLEAN_IMPLEMENTATION
-#define GXFEM_INTEGRATE_IMPLEMENTATION
-#include "../../gxfem_boolean.h"
-#include "../../gxfem_integrate.h"
-#ifdef __wasm__
-#pragma clang attribute pop
 #endif
 #define GXFEM_IMPLEMENTATION
 #include "../../gxfem.h"
