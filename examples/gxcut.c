@@ -903,12 +903,13 @@ static int end_early(run *r, const char *name, size_t line, const char *cause) {
 /* The blade's edge of a line of its file failed. */
 static int refuse_edge(run *r, size_t line, const gx_failure *failure) {
     char cause[256];
-    if (!is_named(failure, "edge"))
+    const int inside = is_named(failure, "starts_inside");
+    if (!inside && !is_named(failure, "edge"))
         snprintf(cause, sizeof cause, "%s", gxfailure_say(failure, gx_result_text(failure->result)).text);
     else
         snprintf(cause, sizeof cause, "point %lu of the edge: %s", (unsigned long)failure->index,
-                 failure->result == GX_ERROR_ARGUMENT ? "the blade starts in the material, which --blade-inside allows"
-                                                      : gx_result_text(failure->result));
+                 inside ? "the blade starts in the material, which --blade-inside allows"
+                        : gx_result_text(failure->result));
     return end_early(r, r->set.blade, line, cause);
 }
 

@@ -533,6 +533,7 @@ END_TEST
    stays in front of the skin, and is pushed out. */
 START_TEST(small_ones_are_not_swallowed) {
     workload w = grid(4, 4, 4, 6);
+    static const double half[3] = {0.6, 0.4, 0.3};
     const int inside = _i % 2;
     gx_collider c = _i < 2 ? collider_of(1, GX_COLLIDER_SPHERE, 0.6, 0, 0, 2.2, 1.9, 4.6)
                   : _i < 4 ? collider_of(1, GX_COLLIDER_CAPSULE, 0.4, 1.5, 0, 2.1, 1.9, 5.8)
@@ -564,7 +565,7 @@ START_TEST(small_ones_are_not_swallowed) {
     }
     if (getenv("GXFEM_VERBOSE")) printf("small %d: depth %g, at most %g, force %g\n", _i, depth, most, load.force[2]);
     ck_assert_double_gt(load.force[2], 5 * hypot(load.force[0], load.force[1]));
-    ck_assert_double_lt(depth, gxp_collider_half(&c));
+    ck_assert_double_lt(depth, half[_i / 2]);
     gx_body_destroy(body);
     wl_free(&w);
 }
