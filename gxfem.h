@@ -474,10 +474,9 @@ GXFEM_API gx_region gx_region_half_space(uint32_t axis, int side, double value);
 GXFEM_API gx_region gx_region_box(const double low[3], const double high[3]);
 GXFEM_API gx_region gx_region_sphere(const double center[3], double radius);
 /* Holds copies at their present displacement (Dirichlet), now and after later cuts: those whose node is in a region and
-   whose own cells have material there. Those of anchors: the copies that move them, at the
-   corners of their elements. gx_step_desc.region_poses moves
-   what a region holds. Arrays are copied. Replaces the regions held before; region_count 0 releases all. On an error
-   the earlier regions stay held.
+   whose own cells have material there. Those of anchors: the copies that move them, at the corners of their elements.
+   gx_step_desc.region_poses moves what a region holds. Arrays are copied. Replaces the regions held before;
+   region_count 0 releases all. On an error the earlier regions stay held.
    Errors: ARGUMENT, NOT_FINITE, RANGE, INDEX, NOT_CLOSED, EMPTY (a region holds no copy; later cuts may leave it none),
    LIMIT, MEMORY; failure.index: region. */
 GXFEM_API gx_result gx_body_hold(gx_body *body, const gx_region *regions, size_t region_count,
@@ -841,13 +840,12 @@ GXFEM_API void gx_blade_destroy(gx_blade *blade); /* or NULL */
 GXFEM_API gx_blade *gx_body_blade(const gx_body *body, size_t index);
 /* Moves the edge and cuts what it has passed since the last move, relative to the material. A long move goes in steps
    of an element, 8 for each element of the body's length at most. A move that changes little is remembered and worked
-   out later, before the path bends. edge: point_count x 3, in space, m; as many points at
-   each move until the blade is lifted, 2 or more; ends may be 10^12 elements away. scope: fragments that alone are cut,
-   below gx_view.fragment_count; count 0: all. On an error body and blade are as they were. Errors: ARGUMENT
-   (also "starts_inside": it is 0, and the first edge is inside the material; index: the point at or after that place),
-   INDEX, NOT_FINITE and RANGE (edge, or
-   "displacement", index: copy, or SIZE_MAX if the body is deformed so that a place of the edge has no material point in
-   doubles), LIMIT, MEMORY. */
+   out later, before the path bends. edge: point_count x 3, in space, m; as many points at each move until the blade is
+   lifted, 2 or more; ends may be 10^12 elements away. scope: fragments that alone are cut, below
+   gx_view.fragment_count; count 0: all. On an error body and blade are as they were.
+   Errors: ARGUMENT (also "starts_inside": it is 0, and the first edge is inside the material; index: the point at or
+   after that place), INDEX, NOT_FINITE and RANGE (edge, or "displacement", index: copy, or SIZE_MAX if the body is
+   deformed so that a place of the edge has no material point in doubles), LIMIT, MEMORY. */
 GXFEM_API gx_result gx_blade_move(gx_blade *blade, const double *edge, size_t point_count,
                                   const uint32_t *scope_fragments, size_t scope_fragment_count,
                                   gx_blade_report *report /* or NULL */, gx_failure *failure /* or NULL */);
@@ -873,9 +871,8 @@ GXFEM_API gx_result gx_blade_contacts(gx_blade *blade, gx_blade_contact *contact
                                       gx_failure *failure /* or NULL */);
 
 /* Removes the material that a closed tool in space covers now (a drill, a punch), from each piece where it meets the
-   tool. tool: vertices in space, m; its triangles are oriented alike, either way; kind and scope_slots are not read.
-   Volumes of the report are of material at rest. Its triangles are divided where elements
-   are smaller.
+   tool. tool: vertices in space, m; kind and scope_slots are not read. Its triangles are oriented alike, either way,
+   and are divided where elements are smaller. Volumes of the report are of material at rest.
    Errors: as gx_body_cut; a field of the tool reads "tool.vertices"; NOT_FINITE and RANGE also of "displacement"
    (index: as for moves of blades). */
 GXFEM_API gx_result gx_body_carve(gx_body *body, const gx_surface *tool, gx_cut_report *report /* or NULL */,
@@ -13064,25 +13061,32 @@ static void gxp_add_normal(const gxp_touch *t, const gxp_touch_surface *s, uint3
     for (k = 0; k < 3 && far < 1; k++) a->mean[k] += (1 - far) * sqrt(gxp_dot(n, n)) * facing[k];
 }
 
-/* Calls a function for all facets in boxes that are not further away than reach. */
+/* The square of a place's distance from a box, m2 */
+static double gxp_square_from_box(const gxp_touch *t, uint32_t box, const double x[3]) {
+    const gxp_touch_span *b = &t->boxes[box].from;
+    double square = 0;
+    int k;
+    for (k = 0; k < 3; k++) {
+        const double own = x[k] - t->origin[k],
+                     beside = fmax(0, fmax((double)b->low[k] - own, own - (double)b->high[k]));
+        square += beside * beside;
+    }
+    return square;
+}
+
+/* Calls a function for all facets in boxes that are not further away than a->square, nearer boxes first. */
 static void gxp_go_around(const gxp_touch *t, const gxp_touch_surface *s, gxp_setting *a,
                           void (*visit)(const gxp_touch *, const gxp_touch_surface *, uint32_t, gxp_setting *)) {
     uint32_t stack[64], count = 0, i;
     stack[count++] = 0;
     while (count > 0) {
         const uint32_t box = stack[--count];
-        const gxp_touch_span *b = &t->boxes[box].from;
-        double square = 0;
-        int k;
-        for (k = 0; k < 3; k++) {
-            const double x = a->x[k] - t->origin[k],
-                         beside = fmax(0, fmax((double)b->low[k] - x, x - (double)b->high[k]));
-            square += beside * beside;
-        }
-        if (!(square <= a->square)) continue;
+        if (!(gxp_square_from_box(t, box, a->x) <= a->square)) continue;
         if (box + 1 < t->leaf_count) {
-            stack[count++] = 2 * box + 2;
-            stack[count++] = 2 * box + 1;
+            const uint32_t child = 2 * box + 1;
+            const uint32_t far = gxp_square_from_box(t, child, a->x) <= gxp_square_from_box(t, child + 1, a->x);
+            stack[count++] = child + far;
+            stack[count++] = child + 1 - far;
             continue;
         }
         for (i = GXP_TOUCH_LEAF * (box + 1 - t->leaf_count);

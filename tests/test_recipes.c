@@ -388,22 +388,10 @@ END_TEST
 START_TEST(remove_a_piece) {
     static const double low[3] = {0, 0, 0}, high[3] = {1, 1, 1};
     gx_body *body = make_body(5, NULL);
-    const double x[9] = {-1, -1, 0.13, 3, -1, 0.13, -1, 3, 0.13};
-    static const uint32_t triangle[3] = {0, 1, 2};
-    gx_surface sheet;
-    gx_cut_desc cut;
     gx_view view;
     uint32_t ids[2], small;
     double volume;
-    memset(&sheet, 0, sizeof sheet);
-    sheet.vertices = x;
-    sheet.vertex_count = 3;
-    sheet.triangles = triangle;
-    sheet.triangle_count = 1;
-    memset(&cut, 0, sizeof cut);
-    cut.surfaces = &sheet;
-    cut.surface_count = 1;
-    OK(gx_body_cut(body, &cut, NULL, NULL));
+    cut_through(body, 2, 0.13);
     OK(gx_body_view(body, &view, NULL));
     ck_assert_uint_eq(view.fragment_count, 2);
     small = view.fragment_volume[1] < view.fragment_volume[0];
