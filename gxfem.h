@@ -44,7 +44,7 @@
  *     >>viewing    cells, copies, fragments, motion
  *     >>anchoring  material points that survive cuts
  *     >>stepping   held regions, time steps
- *     >>touching   contact of pieces
+ *     >>touching   contact of pieces, of several bodies
  *     >>drawing    the visual surface, rays
  *     >>locating   points of space: what material is there; where material is
  *     >>slicing    blades in space
@@ -65,6 +65,7 @@
  *     a blade in space:          >>layers >>edges >>relations >>fronts >>glances >>strokes >>ways >>blade
  *                                >>contacts >>carve
  *     beginning, end, bytes:     >>grid >>create >>hashes >>stream >>scabbard >>save
+ *     several bodies:            >>members >>joining >>group
  *
  * Words. Facet: a polygon inside an element or in an element face, made by cuts. Wall: a facet that a sheet covers.
  * Cell: a connected part of one element after cutting (GXFEM Eq. 20). Link: all facets of the face between two elements
@@ -74,8 +75,7 @@
  * Exact: the set of cells and their links, hence copies and fragments. Decisions are signs of polynomials in the given
  * coordinates (gxfem_boolean.h). Rounded once, to doubles: volumes, masses and vertices.
  *
- * Not there yet: contact of two bodies of the library (pieces of one touch each other and the host's rigid bodies:
- * gx_body_contact); sheets given in the deformed state (moving edges and closed tools are: gx_blade, gx_body_carve);
+ * Not there yet: sheets given in the deformed state (moving edges and closed tools are: gx_blade, gx_body_carve);
  * unknowns within a partly cut element (a sheet that ends inside an element separates nothing there until another sheet
  * completes it).
  *
@@ -674,6 +674,33 @@ typedef struct gx_contact_event {
    step; gx_body_view). */
 GXFEM_API gx_result gx_body_contact_events(gx_body *body, gx_contact_event *events, size_t capacity, size_t *count,
                                            gx_failure *failure /* or NULL */);
+
+/* Several bodies that touch each other, in one step. Each of them has contact on, and may be cut, held, saved, restored
+   and stepped alone between steps of the group. What bodies press with on each other stays with their material, as what
+   pieces of one do. A group has a solver of its own, with all elements; it is told whole after a cut or hold. */
+typedef struct gx_group gx_group;
+/* bodies: body_count, 1 or more, each once; they must live as long as the group. Memory, jobs and clock are those of
+   the first. Errors: ARGUMENT, EMPTY, LIMIT, MEMORY; failure.surface: which body */
+GXFEM_API gx_result gx_group_create(gx_body *const *bodies, size_t body_count, gx_group **group,
+                                    gx_failure *failure /* or NULL */);
+GXFEM_API void gx_group_destroy(gx_group *group /* or NULL */);
+/* Takes one time step of all bodies. steps: body_count. Of each are read what acts on its body: forces, targets, poses,
+   springs, points, pairs and their anchors. All else is read of the first, colliders and their loads too. So are the
+   numbers of gx_contact_desc, but friction: where two bodies touch, it is the mean of theirs. The contact filter knows
+   fragments of the first body by their indices; those of each further body go on where the one before ends.
+   Bodies keep their order in time: after a step of one alone, GXS_BDF2 begins anew. On an error all bodies are as they
+   were. Errors: as gx_body_step; failure.surface: which body; SIZE_MAX: no single one. SEQUENCE: contact is off */
+GXFEM_API gx_result gx_group_step(gx_group *group, const gx_step_desc *steps, gx_step_report *report /* or NULL */,
+                                  gx_failure *failure /* or NULL */);
+/* A place where bodies, or pieces of one, pressed on each other at the end of the group's last step */
+typedef struct gx_group_contact {
+    uint32_t body, other_body; /* below body_count; equal: pieces of one body; other_body is UINT32_MAX: a collider */
+    gx_contact contact;        /* its fragments by the numbers that they have in their bodies */
+} gx_group_contact;
+/* Lists them; gx_body_contacts has those of steps of a body alone. *count: how many there are, also after CAPACITY.
+   Errors: ARGUMENT, CAPACITY (capacity is below *count), SEQUENCE (a body has been cut since the step). */
+GXFEM_API gx_result gx_group_contacts(const gx_group *group, gx_group_contact *contacts, size_t capacity, size_t *count,
+                                      gx_failure *failure /* or NULL */);
 
 /* >>drawing -------------------------------------------------------------------------------------------------------- */
 
@@ -1574,6 +1601,7 @@ typedef struct gxp_touch_vertex { /* of the surface: a sample */
     uint32_t stands;   /* the sample that has its area: itself, or another vertex */
     uint32_t held;     /* of a step: 1 if it pressed on a facet at the end of the last one */
     double young;      /* Pa */
+    uint32_t member;   /* of a group: the body; else 0 */
 } gxp_touch_vertex;
 
 typedef struct gxp_touch_facet {
@@ -1689,6 +1717,7 @@ typedef struct gxp_touch {
     const gx_collider *colliders; /* collider_count: the caller's */
     int (*filter)(void *user, uint32_t fragment, uint32_t other, uint32_t collider);
     void *filter_user;
+    const double *frictions; /* of a group, by body; NULL: desc has it */
     uint32_t collider_count;
     gxp_keys named;       /* id, place of a collider; ascending */
     gxp_words changed;    /* of each collider: 1 if it moves or is not as it was in the last step */
@@ -14073,7 +14102,7 @@ static uint32_t gxp_keep_leaves(const gxp_touch *t, const gxp_touch_place *x, co
         GXP_FLAGS(far) = GXP_ABOVE(GXP_LANE(side), to[0]) | GXP_ABOVE(from[0], GXP_LANE(side + 3 * n)) |
                          GXP_ABOVE(GXP_LANE(side + n), to[1]) | GXP_ABOVE(from[1], GXP_LANE(side + 4 * n)) |
                          GXP_ABOVE(GXP_LANE(side + 2 * n), to[2]) | GXP_ABOVE(from[2], GXP_LANE(side + 5 * n));
-        for (j = 0; j < 4; j++) {
+        for (j = 0; j < 4 && i + j < t->near.count; j++) { /* what is not a number is not far from anything */
             kept[count] = (uint32_t)(i + j);
             count += (uint32_t)(far[j] == 0);
         }
@@ -14522,6 +14551,11 @@ static size_t gxp_pair_span(const gx_body *body) {
     return GXP_TOUCH_COPIES * (body->hidden.copies.count > 0 ? 4u : 1u);
 }
 
+/* The coefficient of friction of a vertex's body */
+static double gxp_friction(const gxp_touch *t, const gxp_touch_vertex *v) {
+    return t->frictions != NULL ? t->frictions[v->member] : t->desc.friction;
+}
+
 /* A pair as the solver takes it. It begins with the force with which the sample pressed before. */
 static void gxp_set_pair(gx_body *body, const gxp_touch_surface *s, uint32_t i, double dt, gxs_pair *to) {
     const gxp_touch *t = &body->touch;
@@ -14531,13 +14565,14 @@ static void gxp_set_pair(gx_body *body, const gxp_touch_surface *s, uint32_t i, 
     memset(to, 0, sizeof *to);
     to->point.epoch = body->cuts.epoch;
     memcpy(to->normal, pair->normal, sizeof to->normal);
-    to->friction = t->desc.friction;
     to->sticking_speed = t->desc.sticking_speed;
     if (pair->facet != GXP_NONE) { /* the other side has a sample of its own somewhere near: each has half */
         const gxp_touch_vertex *w = &s->vertices[s->facets[pair->facet].vertex[0]];
         to->stiffness = 0.5 * t->desc.stiffness * fmin(v->young, w->young) * v->layers;
+        to->friction = 0.5 * (gxp_friction(t, v) + gxp_friction(t, w));
     } else {
         to->flags = GXS_PAIR_OUTSIDE;
+        to->friction = gxp_friction(t, v);
         if (pair->collider != GXP_NONE) {
             to->stiffness = t->desc.stiffness * v->young * pair->layers;
             to->friction = t->colliders[pair->collider].friction;
@@ -14586,31 +14621,33 @@ static gx_result gxp_join_pairs(gx_body *body, gxp_touch_surface *s, double dt, 
     return GX_OK;
 }
 
-/* Adds the pairs of contact to a step. surface: receives the one that they are of */
-static gx_result gxp_attach_contact(gx_body *body, const gx_step_desc *desc, gxs_step_desc *step,
-                                    gxp_touch_surface **surface, gx_failure *failure) {
-    const double dt = gxp_is_finite(step->dt) && step->dt > 0 ? step->dt : 0;
-    gx_result result;
-    int anew;
+/* Is a step with contact possible? Takes its colliders. */
+static gx_result gxp_start_contact(gx_body *body, const gx_step_desc *desc, const gxs_step_desc *step,
+                                   gx_failure *failure) {
     body->touch.kept = 0;
     if (step->quality > 0) return gxp_refuse(failure, "quality"); /* its parts would not search again */
     if (step->integrator == GXS_MIDPOINT) return gxp_refuse(failure, "integrator");
     if (step->pair_count > 0 && step->pairs == NULL) return gxp_refuse(failure, "pairs");
-    result = gxp_take_colliders(body, desc, failure);
-    if (result != GX_OK) return result;
-    result = gxp_step_surface(body, surface);
-    if (result == GX_OK) result = gxp_surface_room(body, *surface);
+    return gxp_take_colliders(body, desc, failure);
+}
+
+/* Adds the pairs of contact to a step. surface: the one that they are of */
+static gx_result gxp_attach_contact(gx_body *body, gxs_step_desc *step, gxp_touch_surface *surface,
+                                    gx_failure *failure) {
+    const double dt = gxp_is_finite(step->dt) && step->dt > 0 ? step->dt : 0;
+    gx_result result = gxp_surface_room(body, surface);
+    int anew;
     if (gxp_end(failure, result) != GX_OK) return result;
-    anew = body->touch.sought != (*surface == &body->touch.surfaces[0] ? 1u : 2u) || body->touch.filter != NULL ||
+    anew = body->touch.sought != (surface == &body->touch.surfaces[0] ? 1u : 2u) || body->touch.filter != NULL ||
            body->touch.sought_dt < dt || body->touch.sought_dt > dt;
     body->touch.sought = 0; /* until this search has succeeded */
-    anew |= gxp_set_origin(body, *surface, anew);
-    gxp_place_vertices(body, *surface, dt, anew);
-    gxp_turn_surface(body, *surface);
-    gxp_fit_facets(body, *surface, anew);
-    gxp_mark_held(&body->touch, *surface);
-    result = gxp_seek_pairs(body, *surface, dt, failure);
-    return result == GX_OK ? gxp_end(failure, gxp_join_pairs(body, *surface, dt, step)) : result;
+    anew |= gxp_set_origin(body, surface, anew);
+    gxp_place_vertices(body, surface, dt, anew);
+    gxp_turn_surface(body, surface);
+    gxp_fit_facets(body, surface, anew);
+    gxp_mark_held(&body->touch, surface);
+    result = gxp_seek_pairs(body, surface, dt, failure);
+    return result == GX_OK ? gxp_end(failure, gxp_join_pairs(body, surface, dt, step)) : result;
 }
 
 /* A number of a vector of the solver's model: of a copy's displacement, or of a hidden vector */
@@ -14786,6 +14823,19 @@ static void gxp_place_sample(const gx_body *body, const gxp_touch_surface *s, co
     }
 }
 
+/* A pair of the last step, as the caller sees it */
+static void gxp_describe_contact(const gx_body *body, const gxp_touch_surface *s, uint32_t i, gx_contact *to) {
+    const gxp_touch *t = &body->touch;
+    const gxp_touch_pair *pair = &t->pairs[i];
+    to->fragment = gxp_sample_vertex(s, pair->sample)->fragment;
+    to->other = pair->facet != GXP_NONE ? s->facets[pair->facet].fragment : GXP_NONE;
+    to->collider = pair->other;
+    gxp_place_sample(body, s, pair, to->position);
+    memcpy(to->normal, pair->normal, sizeof to->normal);
+    memcpy(to->force, t->forces + 3 * ((size_t)t->given + i), sizeof to->force);
+    to->depth = -pair->gap;
+}
+
 GXFEM_API gx_result gx_body_contacts(const gx_body *body, gx_contact *contacts, size_t capacity, size_t *count,
                                      gx_failure *failure) {
     const gxp_touch *t;
@@ -14803,16 +14853,7 @@ GXFEM_API gx_result gx_body_contacts(const gx_body *body, gx_contact *contacts, 
     for (i = 0; i < t->kept && t->made; i++) {
         const gxp_touch_pair *pair = &t->pairs[i];
         if (!(pair->pressed > 0)) continue;
-        if (all < capacity) {
-            gx_contact *c = &contacts[all];
-            c->fragment = gxp_sample_vertex(s, pair->sample)->fragment;
-            c->other = pair->facet != GXP_NONE ? s->facets[pair->facet].fragment : GXP_NONE;
-            c->collider = pair->other;
-            gxp_place_sample(body, s, pair, c->position);
-            memcpy(c->normal, pair->normal, sizeof c->normal);
-            memcpy(c->force, t->forces + 3 * ((size_t)t->given + i), sizeof c->force);
-            c->depth = -pair->gap;
-        }
+        if (all < capacity) gxp_describe_contact(body, s, i, &contacts[all]);
         all++;
     }
     *count = all;
@@ -15142,7 +15183,11 @@ GXFEM_API gx_result gx_body_step(gx_body *body, const gx_step_desc *desc, gx_ste
     if (result != GX_OK) return gxp_fail(failure, result, NULL, refused.index);
     result = gxp_translate_step(body, desc, &step);
     if (gxp_end(failure, result) == GX_OK) result = gxp_attach(body, desc, &step, failure);
-    if (result == GX_OK && body->touch.on) result = gxp_attach_contact(body, desc, &step, &surface, failure);
+    if (result == GX_OK && body->touch.on) {
+        result = gxp_start_contact(body, desc, &step, failure);
+        if (result == GX_OK) result = gxp_end(failure, gxp_step_surface(body, &surface));
+        if (result == GX_OK) result = gxp_attach_contact(body, &step, surface, failure);
+    }
     if (result == GX_OK && body->hidden.copies.count > 0) result = gxp_end(failure, gxp_expand(body, desc, &step));
     if (result != GX_OK) return result;
     if (body->model.empty) {
@@ -21319,6 +21364,804 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
     gxp_release(&body->config.allocator, body->touch.touching.data, body->touch.touching.capacity * sizeof(uint32_t));
     body->touch.touching = told;
     return gxp_end(failure, result);
+}
+
+/* >>members: the bodies of a group --------------------------------------------------------------------------------- */
+/* In: bodies. Out: what each of them is in the group's model. Touches the group, not the bodies' own solvers.
+
+   A group steps a body of its own, `all`, which has no mesh: its copies are those of the members, one body's after
+   another's, and so are its materials, its surface of contact and its elements, which only its solver has. Hidden
+   vectors come behind all copies. So what is said of a step with contact (>>touch ... >>step) is said of a group. */
+
+typedef struct gxp_member { /* a body; where its own begin among those of all members */
+    gx_body *body;
+    gxp_touch_surface *surface;  /* of a step: its own */
+    uint64_t modelled, surfaced; /* hashes of its cuts: when the model, when the surface of all was made */
+    uint32_t copies, hidden;     /* how many it has in the model: copies, affine ones with hidden vectors */
+    uint32_t vertices, facets;   /* how many it has in the surface */
+    int wakes;                /* in the next step */
+    uint32_t pairs;              /* of a step: of its samples */
+    uint32_t first_copy, first_hidden, first_vertex, first_facet, first_fragment;
+    size_t first_spring, first_point, first_pair; /* of a step */
+    gxs_step_desc step;                           /* what acts on it, in its own numbers */
+} gxp_member;
+
+struct gx_group {
+    gx_body *all;
+    gxp_member *members;
+    uint32_t count, member_capacity;
+    int known, made;   /* all's solver has the model; all's surface is there */
+    double *frictions; /* by member */
+    uint32_t friction_capacity;
+    /* of a step: forces of springs, slips and forces of pairs that are given, x 3 */
+    double *results;
+    uint32_t result_capacity;
+};
+
+/* Says which body an error is about. */
+static gx_result gxp_blame_member(gx_failure *failure, size_t member, gx_result result) {
+    if (result != GX_OK && failure != NULL) failure->surface = member;
+    return result;
+}
+
+/* The group's number of a vector of a member's model: a copy, or a hidden vector */
+static uint32_t gxp_joint_vector(const gx_group *group, const gxp_member *m, uint32_t vector) {
+    return vector < m->copies ? m->first_copy + vector
+                              : group->all->copies.count + 3 * m->first_hidden + (vector - m->copies);
+}
+
+/* What a member's hidden vectors are multiplied with in the group's model: all have one unit of length there */
+static double gxp_hidden_scale(const gx_group *group, const gxp_member *m) {
+    return m->hidden > 0 ? group->all->mesh.affine_length / m->body->mesh.affine_length : 1;
+}
+
+/* Is the member in the model as it is now? Its held copies are up to date. */
+static int gxp_is_modelled(const gx_group *group, const gxp_member *m) {
+    const gx_body *all = group->all, *body = m->body;
+    const uint32_t *affine = body->hidden.copies.data;
+    uint32_t i;
+    if (m->modelled != body->cuts.hash || m->copies != body->copies.count || m->hidden != body->hidden.copies.count)
+        return 0;
+    if (m->hidden > 0 && body->hidden.first.count != gxp_vector_count(body)) return 0;
+    for (i = 0; i < m->hidden; i++)
+        if (all->hidden.copies.data[m->first_hidden + i] != m->first_copy + affine[i]) return 0;
+    return m->copies == 0 || memcmp(all->copies.held + m->first_copy, body->copies.held, m->copies) == 0;
+}
+
+/* Were a member's copies moved by the caller since the group's last step? */
+static int gxp_is_moved(const gx_group *group, const gxp_member *m) {
+    const gxp_copies *own = &m->body->copies, *all = &group->all->copies;
+    const size_t first = 3 * (size_t)m->first_copy, bytes = 3 * (size_t)m->copies * sizeof(double);
+    return m->copies > 0 && (memcmp(all->displacement + first, own->displacement, bytes) != 0 ||
+                             memcmp(all->velocity + first, own->velocity, bytes) != 0);
+}
+
+/* Begins a new model: room for all copies, and where each member's begin. Members that are new to the model, or were
+   moved, wake: the solver does not remember what it is told anew. */
+static gx_result gxp_start_joint(gx_group *group) {
+    gx_body *all = group->all;
+    size_t copies = 0;
+    uint32_t i, c;
+    int affine = 0, k;
+    gx_result result;
+    for (i = 0; i < group->count; i++) {
+        gxp_member *m = &group->members[i];
+        m->wakes |= group->known && (m->modelled != m->body->cuts.hash || m->copies != m->body->copies.count ||
+                                     gxp_is_moved(group, m));
+        copies += m->body->copies.count;
+        affine |= m->body->copies.affine != NULL;
+    }
+    group->known = 0;
+    for (i = 0; i < group->count; i++) group->members[i].modelled = 0;
+    if (copies >= INT32_MAX / 2) return GX_ERROR_LIMIT;
+    all->copies.count = all->hidden.copies.count = all->mesh.node_count = all->mesh.material_count = 0;
+    all->model.part_count = all->model.constraint_count = 0;
+    all->copies.bends = 0;
+    all->mesh.affine_length = 0;
+    result = gxp_grow_rows(all, GXP_COPIES, copies);
+    for (k = 0; k < GXP_AFFINE_COLUMNS && result == GX_OK && affine; k++)
+        result = gxp_grow_column(all, &gxp_copy_columns[GXP_FIRST_AFFINE + k], 0, copies);
+    if (result == GX_OK)
+        result = gxp_reserve(&all->config.allocator, &all->mesh.positions, 3 * sizeof(double), 0,
+                             &all->mesh.node_capacity[0], copies);
+    if (result != GX_OK) return result;
+    all->copies.count = all->mesh.node_count = (uint32_t)copies;
+    for (i = c = 0; i < group->count; c += group->members[i++].copies) {
+        group->members[i].first_copy = c;
+        group->members[i].copies = group->members[i].body->copies.count;
+        all->mesh.affine_length = fmax(all->mesh.affine_length, group->members[i].body->mesh.affine_length);
+    }
+    return GX_OK;
+}
+
+/* Appends a member's elements, materials, constraints and affine copies. */
+static gx_result gxp_join_model(gx_group *group, gxp_member *m, const gxs_model *model) {
+    gx_body *all = group->all;
+    gxp_model *to = &all->model;
+    const gx_allocator *a = &all->config.allocator;
+    const uint32_t first = m->first_copy, material = all->mesh.material_count;
+    const gxp_words *affine = &m->body->hidden.copies;
+    size_t i;
+    int k;
+    gx_result result =
+        gxp_reserve(a, &to->parts, sizeof *to->parts, to->part_count, &to->part_capacity, model->element_count);
+    if (result == GX_OK)
+        result =
+            gxp_reserve(a, &to->elastic, sizeof *to->elastic, material, &to->elastic_capacity, model->material_count);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &to->constraints, sizeof *to->constraints, to->constraint_count,
+                             &to->constraint_capacity, model->constraint_count);
+    if (result == GX_OK) result = gxp_words_room(all, &all->hidden.copies, affine->count);
+    if (result != GX_OK) return result;
+    for (i = 0; i < model->element_count; i++) {
+        gxs_element *part = &to->parts[to->part_count++];
+        *part = model->elements[i];
+        for (k = 0; k < 4; k++) part->copy[k] += first;
+        part->material += material;
+    }
+    for (i = 0; i < model->constraint_count; i++) {
+        gxs_constraint *constraint = &to->constraints[to->constraint_count++];
+        *constraint = model->constraints[i];
+        constraint->copy += first;
+        for (k = 0; k < 4; k++) constraint->master[k] += first;
+    }
+    for (i = 0; i < model->material_count; i++) to->elastic[material + i] = model->materials[i];
+    all->mesh.material_count += (uint32_t)model->material_count;
+    for (i = 0; i < m->copies; i++) {
+        all->copies.node[first + i] = first + (uint32_t)i;
+        all->copies.held[first + i] = m->body->copies.held[i];
+        if (all->copies.affine != NULL)
+            all->copies.affine[first + i] = m->body->copies.affine != NULL ? m->body->copies.affine[i] : 0;
+        memcpy(all->mesh.positions + 3 * (first + i), model->positions + 3 * i, 3 * sizeof(double));
+    }
+    m->first_hidden = all->hidden.copies.count;
+    m->hidden = affine->count;
+    for (i = 0; i < affine->count; i++) all->hidden.copies.data[all->hidden.copies.count++] = first + affine->data[i];
+    all->copies.bends |= m->body->copies.bends;
+    m->modelled = m->body->cuts.hash;
+    return GX_OK;
+}
+
+/* Lists the hidden vectors of all members: their places at rest, which of them are held. */
+static gx_result gxp_join_hidden(gx_group *group) {
+    gx_body *all = group->all;
+    gxp_hidden *hidden = &all->hidden;
+    const uint32_t n = all->copies.count;
+    const size_t vectors = gxp_vector_count(all);
+    uint32_t i, k;
+    gx_result result = gxp_start_words(all, &hidden->first, vectors);
+    if (result == GX_OK)
+        result = gxp_reserve(&all->config.allocator, &hidden->held, 1, 0, &hidden->held_capacity, vectors);
+    if (result == GX_OK)
+        result = gxp_reserve(&all->config.allocator, &all->mesh.positions, 3 * sizeof(double), n,
+                             &all->mesh.node_capacity[0], vectors - n);
+    if (result != GX_OK || hidden->copies.count == 0) return result;
+    hidden->first.count = (uint32_t)vectors;
+    memset(hidden->first.data, 0xff, vectors * sizeof *hidden->first.data);
+    memcpy(hidden->held, all->copies.held, n);
+    for (i = 0; i < hidden->copies.count; i++) {
+        const uint32_t copy = hidden->copies.data[i];
+        hidden->first.data[copy] = n + 3 * i;
+        for (k = 0; k < 3; k++) {
+            hidden->held[n + 3 * i + k] = all->copies.held[copy];
+            memcpy(all->mesh.positions + 3 * ((size_t)n + 3 * i + k), all->mesh.positions + 3 * (size_t)copy,
+                   3 * sizeof(double));
+        }
+    }
+    return GX_OK;
+}
+
+/* Tells the solver what all members are made of. */
+static gx_result gxp_set_joint(gx_group *group, gx_failure *failure) {
+    gx_body *all = group->all;
+    gxs_model model;
+    gx_failure own;
+    gx_result result = gxp_start_joint(group);
+    uint32_t i;
+    gxp_end(&own, GX_OK);
+    for (i = 0; i < group->count && result == GX_OK; i++) {
+        gxp_member *m = &group->members[i];
+        result = gx_body_model(m->body, &model, &own);
+        if (result != GX_OK && failure != NULL) *failure = own;
+        if (result != GX_OK) return gxp_blame_member(failure, i, result);
+        result = gxp_join_model(group, m, &model);
+        gxp_release_model(m->body);
+    }
+    if (result == GX_OK) result = gxp_join_hidden(group);
+    if (gxp_end(failure, result) != GX_OK) return result;
+    memset(&model, 0, sizeof model);
+    model.copy_count = gxp_vector_count(all);
+    model.positions = all->mesh.positions;
+    model.elements = all->model.parts;
+    model.element_count = all->model.part_count;
+    model.materials = all->model.elastic;
+    model.material_count = all->mesh.material_count;
+    model.held = all->hidden.copies.count > 0 ? all->hidden.held : all->copies.held;
+    model.affine = all->hidden.copies.count > 0 ? all->hidden.first.data : NULL;
+    model.affine_length = all->mesh.affine_length;
+    model.constraints = all->model.constraints;
+    model.constraint_count = all->model.constraint_count;
+    all->model.empty = model.element_count == 0;
+    result = all->model.empty ? GX_OK : gxs_solver_set_model(all->solver, &model, &own);
+    if (result != GX_OK) return gxp_fail(failure, result, NULL, SIZE_MAX);
+    group->known = 1;
+    return GX_OK;
+}
+
+/* Brings the solver's model up to date after cuts and holds of members. */
+static gx_result gxp_update_joint(gx_group *group, gx_failure *failure) {
+    gx_result result = GX_OK;
+    int known = group->known;
+    uint32_t i;
+    for (i = 0; i < group->count; i++) {
+        gxp_member *m = &group->members[i];
+        result = gxp_end(failure, gxp_update_held(m->body));
+        if (result != GX_OK) return gxp_blame_member(failure, i, result);
+        known = known && gxp_is_modelled(group, m);
+    }
+    if (!known) result = gxp_set_joint(group, failure);
+    gxp_release_model(group->all);
+    return result;
+}
+
+/* >>joining: what members are and do within a step, in the group's numbers ----------------------------------------- */
+/* In: members, their surfaces of contact with states, what acts on them. Out: the same of all of them, as a step takes
+   it; after the step, each member's own. */
+
+/* Appends a member's surface, without states. elements: how many those before it have */
+static gx_result gxp_join_surface(gx_body *all, const gxp_member *m, uint32_t member, uint32_t elements) {
+    const gx_allocator *a = &all->config.allocator;
+    gxp_touch_surface *s = &all->touch.surfaces[0];
+    const gxp_touch_surface *own = m->surface;
+    const uint32_t first = m->first_vertex, samples = s->samples.count;
+    uint32_t i, k;
+    gx_result result =
+        gxp_reserve(a, &s->vertices, sizeof *s->vertices, s->vertex_count, &s->vertex_capacity, own->vertex_count);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &s->facets, sizeof *s->facets, s->facet_count, &s->facet_capacity, own->facet_count);
+    if (result == GX_OK) result = gxp_words_room(all, &s->guesses, own->vertex_count);
+    if (result == GX_OK) result = gxp_words_room(all, &s->names, own->vertex_count);
+    if (result == GX_OK) result = gxp_words_room(all, &s->places, own->vertex_count);
+    if (result == GX_OK) result = gxp_words_room(all, &s->samples, own->samples.count);
+    if (result == GX_OK) result = gxp_words_room(all, &s->sides, own->sides.count);
+    if (result == GX_OK) result = gxp_words_room(all, &s->crowds, own->crowds.count);
+    if (result != GX_OK) return result;
+    for (i = 0; i < own->vertex_count; i++) {
+        gxp_touch_vertex *v = &s->vertices[s->vertex_count++];
+        *v = own->vertices[i];
+        for (k = 0; k < 4; k++) v->copies[k] += m->first_copy;
+        if (v->element != GXP_NONE) v->element += elements;
+        v->fragment += m->first_fragment;
+        v->stands += first;
+        v->member = member;
+        v->held = 0;
+        s->guesses.data[s->guesses.count++] = GXP_NONE;
+        s->names.data[s->names.count++] = first + own->names.data[i];
+        s->places.data[s->places.count++] = first + own->places.data[i];
+    }
+    for (i = 0; i < own->facet_count; i++) {
+        gxp_touch_facet *f = &s->facets[s->facet_count++];
+        *f = own->facets[i];
+        for (k = 0; k < 3; k++) f->vertex[k] += first;
+        f->element += elements;
+        f->fragment += m->first_fragment;
+    }
+    for (i = 0; i < own->samples.count; i++) s->samples.data[s->samples.count++] = first + own->samples.data[i];
+    for (i = 0; i < own->sides.count; i++) s->sides.data[s->sides.count++] = first + own->sides.data[i];
+    for (i = 0; i < own->crowds.count; i++) s->crowds.data[s->crowds.count++] = 2 * samples + own->crowds.data[i];
+    s->largest = fmax(s->largest, own->largest);
+    return GX_OK;
+}
+
+/* Makes the surface of all members anew. */
+static gx_result gxp_join_surfaces(gx_group *group) {
+    gx_body *all = group->all;
+    gxp_touch_surface *s = &all->touch.surfaces[0];
+    uint32_t i, elements = 0, fragments = 0;
+    gx_result result = GX_OK;
+    group->made = 0;
+    all->touch.sought = 0;
+    s->vertex_count = s->facet_count = s->state_count = 0;
+    s->guesses.count = s->names.count = s->places.count = 0;
+    s->samples.count = s->sides.count = s->crowds.count = 0;
+    s->largest = 0;
+    for (i = 0; i < group->count && result == GX_OK; i++) {
+        gxp_member *m = &group->members[i];
+        result = gxp_update_labels(m->body);
+        m->first_vertex = s->vertex_count;
+        m->first_facet = s->facet_count;
+        m->first_fragment = fragments;
+        m->vertices = m->surface->vertex_count;
+        m->facets = m->surface->facet_count;
+        m->surfaced = m->body->cuts.hash;
+        if (result == GX_OK) result = gxp_join_surface(all, m, i, elements);
+        elements += m->body->mesh.element_count;
+        fragments += m->body->view.fragment_count;
+    }
+    group->made = result == GX_OK;
+    return result;
+}
+
+/* Appends the states of a member's samples that are vertices, or facets. */
+static gx_result gxp_join_states(gx_body *all, const gxp_member *m, int facets) {
+    gxp_touch_surface *s = &all->touch.surfaces[0];
+    const uint32_t first = facets ? s->vertex_count + m->first_facet - m->vertices : m->first_vertex;
+    uint32_t i;
+    const gx_result result = gxp_reserve(&all->config.allocator, &s->states, sizeof *s->states, s->state_count,
+                                         &s->state_capacity, m->surface->state_count);
+    for (i = 0; i < m->surface->state_count && result == GX_OK; i++) {
+        const gxp_touch_state *state = &m->surface->states[i];
+        if ((state->sample >= m->vertices) != facets) continue;
+        s->states[s->state_count] = *state;
+        s->states[s->state_count++].sample += first;
+    }
+    return result;
+}
+
+/* Brings the surface of all members up to date, with what each of them presses with. */
+static gx_result gxp_update_surfaces(gx_group *group) {
+    gx_result result = GX_OK;
+    int known = group->made, facets;
+    uint32_t i;
+    for (i = 0; i < group->count && result == GX_OK; i++) {
+        gxp_member *m = &group->members[i];
+        result = gxp_step_surface(m->body, &m->surface);
+        known = known && m->surfaced == m->body->cuts.hash;
+    }
+    if (result == GX_OK && !known) result = gxp_join_surfaces(group);
+    group->all->touch.surfaces[0].state_count = 0;
+    for (facets = 0; facets < 2; facets++)
+        for (i = 0; i < group->count && result == GX_OK; i++)
+            result = gxp_join_states(group->all, &group->members[i], facets);
+    return result;
+}
+
+/* The member that has a sample of the surface of all */
+static gxp_member *gxp_member_of(const gx_group *group, uint32_t sample) {
+    return &group->members[gxp_sample_vertex(&group->all->touch.surfaces[0], sample)->member];
+}
+
+/* Room for what members will press with: the pairs of their samples. What they pressed with stays until the step is
+   taken. */
+static gx_result gxp_states_room(gx_group *group) {
+    const gxp_touch *t = &group->all->touch;
+    uint32_t i;
+    gx_result result = GX_OK;
+    for (i = 0; i < group->count; i++) group->members[i].pairs = 0;
+    for (i = 0; i < t->found; i++) gxp_member_of(group, t->pairs[i].sample)->pairs++;
+    for (i = 0; i < group->count && result == GX_OK; i++) {
+        const gxp_member *m = &group->members[i];
+        gxp_touch_surface *s = m->surface;
+        result = gxp_reserve(&m->body->config.allocator, &s->states, sizeof *s->states, s->state_count,
+                             &s->state_capacity, m->pairs > s->state_count ? m->pairs - s->state_count : 0);
+    }
+    return result;
+}
+
+/* After a step: members get what their samples press with, and each its surface. */
+static void gxp_part_states(gx_group *group) {
+    const gxp_touch_surface *s = &group->all->touch.surfaces[0];
+    uint32_t i;
+    for (i = 0; i < group->count; i++) group->members[i].surface->state_count = 0;
+    for (i = 0; i < s->state_count; i++) {
+        const uint32_t sample = gxp_named_sample(s, s->states[i].sample);
+        const gxp_member *m = gxp_member_of(group, sample);
+        gxp_touch_state *to = &m->surface->states[m->surface->state_count++];
+        *to = s->states[i];
+        to->sample -= sample < s->vertex_count ? m->first_vertex : s->vertex_count + m->first_facet - m->vertices;
+    }
+    for (i = 0; i < group->count; i++) {
+        const gxp_member *m = &group->members[i];
+        gxp_touch *t = &m->body->touch;
+        t->pressed = gxp_hash_states(m->surface);
+        t->current = m->surface == &t->surfaces[0] ? 0 : 1;
+        t->made = 1;
+        t->hash = m->body->cuts.hash;
+        t->kept = 0;
+    }
+}
+
+/* Columns of copies that a step reads and writes: the first ones always, then those of BDF2, then those of A, its rate,
+   and both a step ago */
+enum { GXP_MOVED_COLUMNS = 3, GXP_PAST_COLUMNS = 2, GXP_LINEAR_COLUMNS = 4 };
+static const uint32_t gxp_joined_columns[] = {1,
+                                              2,
+                                              3,
+                                              GXP_FIRST_HISTORY,
+                                              GXP_FIRST_HISTORY + 1,
+                                              GXP_FIRST_AFFINE + 1,
+                                              GXP_FIRST_AFFINE + 2,
+                                              GXP_FIRST_AFFINE + 3,
+                                              GXP_FIRST_AFFINE + 4};
+
+/* Copies the state of a member to that of all, or back. past: what BDF2 needs, too */
+static void gxp_move_state(gx_group *group, const gxp_member *m, int past, int back) {
+    uint32_t i;
+    for (i = 0; i < GXP_MOVED_COLUMNS + GXP_PAST_COLUMNS + GXP_LINEAR_COLUMNS; i++) {
+        const gxp_column *column = &gxp_copy_columns[gxp_joined_columns[i]];
+        char *own = (char *)gxp_array_at(m->body, column), *joint = (char *)gxp_array_at(group->all, column);
+        const size_t bytes = m->copies * column->size;
+        if (i >= GXP_MOVED_COLUMNS && i < GXP_MOVED_COLUMNS + GXP_PAST_COLUMNS && !past) continue;
+        if (joint == NULL || bytes == 0 || (back && own == NULL)) continue;
+        joint += m->first_copy * column->size;
+        if (back)
+            memcpy(own, joint, bytes);
+        else if (own != NULL)
+            memcpy(joint, own, bytes);
+        else
+            memset(joint, 0, bytes);
+    }
+}
+
+/* The state of all members. BDF2 goes on only if all took the last step together. */
+static void gxp_join_state(gx_group *group, const gxs_step_desc *step) {
+    gxp_copies *copies = &group->all->copies;
+    uint32_t i;
+    copies->previous_dt = group->members[0].body->copies.previous_dt;
+    for (i = 1; i < group->count; i++) {
+        const double dt = group->members[i].body->copies.previous_dt;
+        if (dt < copies->previous_dt || dt > copies->previous_dt) copies->previous_dt = 0;
+    }
+    for (i = 0; i < group->count; i++) {
+        const gxp_member *m = &group->members[i];
+        gxp_move_state(group, m, step->integrator == GXS_BDF2 && copies->previous_dt > 0, 0);
+        if (m->wakes && m->copies > 0) memset(copies->rest_time + m->first_copy, 0, m->copies * sizeof(double));
+    }
+}
+
+/* What a member's step is: what acts on it is its own, all else is the group's. */
+static gx_step_desc gxp_member_desc(const gx_step_desc *shared, const gx_step_desc *own) {
+    gx_step_desc desc = *own;
+    desc.dt = shared->dt;
+    memcpy(desc.gravity, shared->gravity, sizeof desc.gravity);
+    desc.integrator = shared->integrator;
+    desc.substeps = shared->substeps;
+    desc.quick = shared->quick;
+    desc.newton_iterations = shared->newton_iterations;
+    desc.newton_tolerance = shared->newton_tolerance;
+    desc.cg_iterations = shared->cg_iterations;
+    desc.cg_tolerance = shared->cg_tolerance;
+    desc.mass_damping = shared->mass_damping;
+    desc.planes = shared->planes;
+    desc.plane_count = shared->plane_count;
+    desc.contact = shared->contact;
+    desc.contact_user = shared->contact_user;
+    desc.sleep_speed = shared->sleep_speed;
+    desc.sleep_time = shared->sleep_time;
+    desc.clock = shared->clock;
+    desc.clock_user = shared->clock_user;
+    desc.budget_seconds = shared->budget_seconds;
+    desc.quality = shared->quality;
+    return desc;
+}
+
+/* What acts on a member, in its own numbers, checked: member.step */
+static gx_result gxp_take_loads(gxp_member *m, const gx_step_desc *desc, gx_failure *failure) {
+    gx_body *body = m->body;
+    gx_result result = gxp_end(failure, gxp_translate_step(body, desc, &m->step));
+    if (result == GX_OK) result = gxp_attach(body, desc, &m->step, failure);
+    if (result == GX_OK && m->hidden > 0) result = gxp_end(failure, gxp_expand(body, desc, &m->step));
+    if (result != GX_OK) return result;
+    if (m->copies > 0) return gxs_step_check(&m->step, gxp_vector_count(body), body->cuts.epoch, failure);
+    result = gxp_check_empty_step(body, desc, &m->step, failure);
+    m->step.spring_count = m->step.point_count = m->step.pair_count = 0;
+    m->step.forces = m->step.targets = NULL;
+    return result;
+}
+
+/* A point of a member in the group's numbers. Its span goes behind those that are there; there is room. */
+static void gxp_join_point(gx_group *group, const gxp_member *m, gxs_point *point) {
+    gx_body *all = group->all;
+    const uint32_t *from = point->copies != NULL ? point->copies : point->copy;
+    const double *weight = point->copies != NULL ? point->weights : point->weight;
+    uint32_t *to = all->hidden.span_copies.data + all->hidden.span_copies.count, i;
+    double *share = all->hidden.span_weights + all->hidden.span_copies.count;
+    for (i = 0; i < point->count; i++) {
+        to[i] = gxp_joint_vector(group, m, from[i]);
+        share[i] = weight[i] / (from[i] < m->copies ? 1 : gxp_hidden_scale(group, m));
+    }
+    all->hidden.span_copies.count += point->count;
+    point->copies = to;
+    point->weights = share;
+    point->epoch = 0;
+}
+
+/* Room for what acts on all members, and where the springs, points and pairs of each begin */
+static gx_result gxp_loads_room(gx_group *group, gxs_step_desc *step) {
+    gx_body *all = group->all;
+    const gx_allocator *a = &all->config.allocator;
+    gxp_attached *attached = &all->attached;
+    const size_t vectors = gxp_vector_count(all);
+    size_t springs = 0, points = 0, pairs = 0, spans = 0, k;
+    int forces = 0, targets = 0;
+    uint32_t i;
+    gx_result result;
+    for (i = 0; i < group->count; i++) {
+        gxp_member *m = &group->members[i];
+        m->first_spring = springs;
+        m->first_point = points;
+        m->first_pair = pairs;
+        for (k = 0; k < m->step.spring_count; k++) spans += m->step.springs[k].point.count;
+        for (k = 0; k < m->step.point_count; k++) spans += m->step.points[k].count;
+        for (k = 0; k < m->step.pair_count; k++) spans += m->step.pairs[k].point.count;
+        springs += m->step.spring_count;
+        points += m->step.point_count;
+        pairs += m->step.pair_count;
+        forces |= m->step.forces != NULL;
+        targets |= m->step.targets != NULL;
+    }
+    if (springs > INT32_MAX || points > INT32_MAX || pairs > INT32_MAX || spans > INT32_MAX) return GX_ERROR_LIMIT;
+    result = gxp_start_words(all, &all->hidden.span_copies, spans);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &all->hidden.span_weights, sizeof(double), 0, &all->hidden.span_capacity, spans);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &attached->springs, sizeof *attached->springs, 0, &attached->spring_capacity, springs);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &attached->points, sizeof *attached->points, 0, &attached->point_capacity, points);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &attached->pairs, sizeof *attached->pairs, 0, &attached->pair_capacity, pairs);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &attached->forces, 3 * sizeof(double), 0, &attached->force_capacity, vectors);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &attached->targets, 3 * sizeof(double), 0, &attached->target_capacity, vectors);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &group->results, 3 * sizeof(double), 0, &group->result_capacity, springs + 2 * pairs);
+    if (result != GX_OK) return result;
+    step->springs = attached->springs;
+    step->points = attached->points;
+    step->pairs = attached->pairs;
+    step->spring_count = springs;
+    step->point_count = points;
+    step->pair_count = pairs;
+    step->spring_forces = group->results;
+    step->pair_slips = group->results + 3 * springs;
+    step->pair_forces = group->results + 3 * (springs + pairs);
+    step->forces = forces ? attached->forces : NULL;
+    step->targets = targets ? attached->targets : NULL;
+    step->epoch = 0;
+    return GX_OK;
+}
+
+/* Forces and targets of a member. Held copies without a target stay. */
+static void gxp_join_arrays(gx_group *group, const gxp_member *m) {
+    gx_body *all = group->all;
+    const gxp_attached *attached = &all->attached;
+    const double scale = gxp_hidden_scale(group, m);
+    uint32_t i, k;
+    for (i = 0; i < m->copies + 3 * m->hidden; i++) {
+        const size_t to = 3 * (size_t)gxp_joint_vector(group, m, i), from = 3 * (size_t)i;
+        const double share = i < m->copies ? 1 : scale;
+        for (k = 0; k < 3; k++) {
+            attached->forces[to + k] = m->step.forces != NULL ? m->step.forces[from + k] / share : 0;
+            attached->targets[to + k] = m->step.targets != NULL ? share * m->step.targets[from + k]
+                                      : i < m->copies           ? m->body->copies.displacement[from + k]
+                                                                : gxp_vector_at(all, (uint32_t)(to / 3), (int)k);
+        }
+    }
+}
+
+/* What acts on all members, as a step of all takes it */
+static gx_result gxp_join_loads(gx_group *group, gxs_step_desc *step) {
+    gxp_attached *attached = &group->all->attached;
+    gx_result result = gxp_loads_room(group, step);
+    uint32_t i;
+    size_t k;
+    for (i = 0; i < group->count && result == GX_OK; i++) {
+        const gxp_member *m = &group->members[i];
+        const gxs_step_desc *own = &m->step;
+        double *slips = step->pair_slips + 3 * m->first_pair;
+        for (k = 0; k < own->spring_count; k++) {
+            attached->springs[m->first_spring + k] = own->springs[k];
+            gxp_join_point(group, m, &attached->springs[m->first_spring + k].point);
+        }
+        for (k = 0; k < own->point_count; k++) {
+            attached->points[m->first_point + k] = own->points[k];
+            gxp_join_point(group, m, &attached->points[m->first_point + k]);
+        }
+        for (k = 0; k < own->pair_count; k++) {
+            attached->pairs[m->first_pair + k] = own->pairs[k];
+            gxp_join_point(group, m, &attached->pairs[m->first_pair + k].point);
+        }
+        for (k = 0; k < 3 * own->pair_count; k++) slips[k] = own->pair_slips != NULL ? own->pair_slips[k] : 0;
+        if (step->forces != NULL || step->targets != NULL) gxp_join_arrays(group, m);
+    }
+    return result;
+}
+
+/* After a step: each member's state, and what its springs and pairs did */
+static void gxp_part_step(gx_group *group, const gxs_step_desc *step, double *const results[3]) {
+    const int past = step->integrator == GXS_BDF2;
+    uint32_t i;
+    for (i = 0; i < group->count; i++) {
+        gxp_member *m = &group->members[i];
+        const gxs_step_desc *own = &m->step;
+        gxp_move_state(group, m, past, 1);
+        m->body->copies.previous_dt = group->all->copies.previous_dt;
+        m->body->model.resumed = 0;
+        m->wakes = 0;
+        if (own->spring_count > 0 && own->spring_forces != NULL)
+            memcpy(own->spring_forces, results[0] + 3 * m->first_spring, 3 * own->spring_count * sizeof(double));
+        if (own->pair_count > 0 && own->pair_slips != NULL)
+            memcpy(own->pair_slips, results[1] + 3 * m->first_pair, 3 * own->pair_count * sizeof(double));
+        if (own->pair_count > 0 && own->pair_forces != NULL)
+            memcpy(own->pair_forces, results[2] + 3 * m->first_pair, 3 * own->pair_count * sizeof(double));
+    }
+}
+
+/* >>group: several bodies in one step ------------------------------------------------------------------------------ */
+/* In: bodies with contact on, descriptions of their steps. Out: their state at the step's end, or all as it was. */
+
+GXFEM_API gx_result gx_group_create(gx_body *const *bodies, size_t body_count, gx_group **out, gx_failure *failure) {
+    gx_allocator a;
+    gx_group *group;
+    gx_result result = GX_ERROR_MEMORY;
+    size_t i, j;
+    if (bodies == NULL) return gxp_refuse(failure, "bodies");
+    if (out == NULL) return gxp_refuse(failure, "group");
+    if (body_count == 0) return gxp_fail(failure, GX_ERROR_EMPTY, "body_count", SIZE_MAX);
+    if (body_count > UINT16_MAX) return gxp_fail(failure, GX_ERROR_LIMIT, "body_count", SIZE_MAX);
+    for (i = 0; i < body_count; i++) {
+        for (j = 0; j < i && bodies[i] != bodies[j];) j++;
+        if (bodies[i] == NULL || j < i) return gxp_blame_member(failure, i, gxp_refuse(failure, "bodies"));
+    }
+    a = bodies[0]->config.allocator;
+    group = (gx_group *)gxp_allocate(&a, sizeof *group);
+    if (group == NULL) return gxp_end(failure, result);
+    memset(group, 0, sizeof *group);
+    group->all = (gx_body *)gxp_allocate(&a, sizeof *group->all);
+    if (group->all == NULL) {
+        gxp_release(&a, group, sizeof *group);
+        return gxp_end(failure, result);
+    }
+    memset(group->all, 0, sizeof *group->all);
+    group->all->config = bodies[0]->config;
+    group->all->touch.on = 1;
+    result = gxp_create_solver(group->all);
+    if (result == GX_OK)
+        result =
+            gxp_reserve(&a, &group->members, sizeof *group->members, 0, &group->member_capacity, (uint32_t)body_count);
+    if (result == GX_OK)
+        result = gxp_reserve(&a, &group->frictions, sizeof(double), 0, &group->friction_capacity, body_count);
+    if (gxp_end(failure, result) != GX_OK) {
+        gx_group_destroy(group);
+        return result;
+    }
+    memset(group->members, 0, body_count * sizeof *group->members);
+    for (i = 0; i < body_count; i++) group->members[i].body = bodies[i];
+    group->count = (uint32_t)body_count;
+    *out = group;
+    return GX_OK;
+}
+
+GXFEM_API void gx_group_destroy(gx_group *group) {
+    gx_allocator a;
+    if (group == NULL) return;
+    a = group->all->config.allocator;
+    gx_body_destroy(group->all);
+    gxp_release(&a, group->members, group->member_capacity * sizeof *group->members);
+    gxp_release(&a, group->frictions, group->friction_capacity * sizeof(double));
+    gxp_release(&a, group->results, group->result_capacity * 3 * sizeof(double));
+    gxp_release(&a, group, sizeof *group);
+}
+
+/* An error of a step of all, whose index may be a copy: of which member? */
+static gx_result gxp_part_failure(const gx_group *group, gx_result result, gx_failure *failure) {
+    uint32_t i;
+    if (failure == NULL || failure->index >= group->all->copies.count) return result;
+    if (failure->field != NULL && strcmp(failure->field, "displacement") != 0 &&
+        strcmp(failure->field, "velocity") != 0)
+        return result;
+    for (i = 0; i + 1 < group->count && failure->index >= group->members[i + 1].first_copy;) i++;
+    failure->index -= group->members[i].first_copy;
+    return gxp_blame_member(failure, i, result);
+}
+
+/* What acts on all members, and their contact, as a step of all takes it */
+static gx_result gxp_join_step(gx_group *group, const gx_step_desc *steps, const gx_step_desc *shared,
+                               gxs_step_desc *step, gx_failure *failure) {
+    gx_body *all = group->all;
+    gx_result result = gxp_end(failure, gxp_translate_step(all, shared, step));
+    uint32_t i;
+    for (i = 0; i < group->count && result == GX_OK; i++) {
+        gxp_member *m = &group->members[i];
+        const gx_step_desc desc = gxp_member_desc(shared, &steps[i]);
+        result = gxp_blame_member(failure, i, gxp_take_loads(m, &desc, failure));
+        group->frictions[i] = m->body->touch.desc.friction;
+    }
+    if (result != GX_OK) return result;
+    gxp_join_state(group, step);
+    step->previous_displacement =
+        step->integrator == GXS_BDF2 && all->copies.previous_dt > 0 ? all->copies.history[0] : NULL;
+    step->previous_dt = all->copies.previous_dt;
+    result = gxp_end(failure, gxp_join_loads(group, step));
+    if (result != GX_OK) return result;
+    all->touch.desc = group->members[0].body->touch.desc;
+    all->touch.frictions = group->frictions;
+    result = gxp_start_contact(all, shared, step, failure);
+    if (result == GX_OK) result = gxp_end(failure, gxp_update_surfaces(group));
+    if (result == GX_OK) result = gxp_attach_contact(all, step, &all->touch.surfaces[0], failure);
+    return result == GX_OK ? gxp_end(failure, gxp_states_room(group)) : result;
+}
+
+GXFEM_API gx_result gx_group_step(gx_group *group, const gx_step_desc *steps, gx_step_report *report,
+                                  gx_failure *failure) {
+    gx_step_desc shared, loads;
+    gxs_step_desc step;
+    gx_body *all;
+    double start, *results[3];
+    gx_result result;
+    uint32_t i;
+    if (group == NULL) return gxp_refuse(failure, "group");
+    if (steps == NULL) return gxp_refuse(failure, "steps");
+    all = group->all;
+    start = gxp_step_seconds(all, steps);
+    for (i = 0; i < group->count; i++) {
+        gxp_member *m = &group->members[i];
+        if (!m->body->touch.on)
+            return gxp_blame_member(failure, i, gxp_fail(failure, GX_ERROR_SEQUENCE, "gx_body_contact", SIZE_MAX));
+        gxp_wake_resumed(m->body, m->body->copies.count);
+    }
+    all->touch.kept = 0;
+    result = gxp_update_joint(group, failure);
+    if (result != GX_OK) return result;
+    memset(&loads, 0, sizeof loads);
+    loads.colliders = steps->colliders;
+    loads.collider_count = steps->collider_count;
+    loads.collider_loads = steps->collider_loads;
+    loads.contact_filter = steps->contact_filter;
+    loads.contact_filter_user = steps->contact_filter_user;
+    shared = gxp_member_desc(steps, &loads);
+    result = gxp_join_step(group, steps, &shared, &step, failure);
+    if (result != GX_OK) return result;
+    results[0] = group->results;
+    results[1] = shared.pair_slips = group->results + 3 * step.spring_count;
+    results[2] = shared.pair_forces = shared.pair_slips + 3 * all->touch.given;
+    if (all->model.empty) {
+        result = gxp_check_empty_step(all, &shared, &step, failure);
+        if (result == GX_OK && report != NULL) {
+            memset(report, 0, sizeof *report);
+            report->stop = GXS_STOP_ASLEEP;
+        }
+    } else
+        result = gxp_part_failure(group, gxp_step(all, &step, report, failure), failure);
+    if (result != GX_OK) return result;
+    gxp_keep_contact(all, &shared, &all->touch.surfaces[0]);
+    gxp_part_states(group);
+    gxp_part_step(group, &step, results);
+    if (report != NULL) report->seconds = gxp_step_seconds(all, steps) - start;
+    return GX_OK;
+}
+
+GXFEM_API gx_result gx_group_contacts(const gx_group *group, gx_group_contact *contacts, size_t capacity, size_t *count,
+                                      gx_failure *failure) {
+    const gxp_touch *t;
+    const gxp_touch_surface *s;
+    size_t listed = 0;
+    uint32_t i;
+    if (group == NULL) return gxp_refuse(failure, "group");
+    if (count == NULL) return gxp_refuse(failure, "count");
+    if (contacts == NULL && capacity > 0) return gxp_refuse(failure, "contacts");
+    *count = 0;
+    t = &group->all->touch;
+    s = &t->surfaces[0];
+    for (i = 0; i < group->count && t->kept > 0; i++)
+        if (group->members[i].surfaced != group->members[i].body->cuts.hash)
+            return gxp_blame_member(failure, i, gxp_fail(failure, GX_ERROR_SEQUENCE, "gx_group_step", SIZE_MAX));
+    for (i = 0; i < t->kept; i++) {
+        const gxp_touch_pair *pair = &t->pairs[i];
+        if (!(pair->pressed > 0)) continue;
+        if (listed < capacity) {
+            gx_group_contact *to = &contacts[listed];
+            to->body = gxp_sample_vertex(s, pair->sample)->member;
+            to->other_body = pair->facet != GXP_NONE ? s->vertices[s->facets[pair->facet].vertex[0]].member : GXP_NONE;
+            gxp_describe_contact(group->all, s, i, &to->contact);
+            to->contact.fragment -= group->members[to->body].first_fragment;
+            if (pair->facet != GXP_NONE) to->contact.other -= group->members[to->other_body].first_fragment;
+        }
+        listed++;
+    }
+    *count = listed;
+    return listed > capacity ? gxp_fail(failure, GX_ERROR_CAPACITY, "capacity", SIZE_MAX) : gxp_end(failure, GX_OK);
 }
 
 #undef GXP_CROWD
