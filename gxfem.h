@@ -165,7 +165,7 @@ typedef struct gx_failure {
        as "gx_body_skin". A string literal. NULL: nothing given is to blame */
     const char *field;
     size_t index;   /* of the node, element, triangle, copy ... concerned; SIZE_MAX: no single one is */
-    size_t surface; /* of a cut: which of its surfaces; else SIZE_MAX */
+    size_t surface; /* of a cut: which of its surfaces; of a group: which of its bodies; else SIZE_MAX */
 } gx_failure;
 
 /* Where memory comes from. Zero-initialised: malloc, free and realloc. */
@@ -21379,7 +21379,7 @@ typedef struct gxp_member { /* a body; where its own begin among those of all me
     uint64_t modelled, surfaced; /* hashes of its cuts: when the model, when the surface of all was made */
     uint32_t copies, hidden;     /* how many it has in the model: copies, affine ones with hidden vectors */
     uint32_t vertices, facets;   /* how many it has in the surface */
-    int wakes;                /* in the next step */
+    int wakes;                   /* in the next step */
     uint32_t pairs;              /* of a step: of its samples */
     uint32_t first_copy, first_hidden, first_vertex, first_facet, first_fragment;
     size_t first_spring, first_point, first_pair; /* of a step */
@@ -21446,8 +21446,8 @@ static gx_result gxp_start_joint(gx_group *group) {
     gx_result result;
     for (i = 0; i < group->count; i++) {
         gxp_member *m = &group->members[i];
-        m->wakes |= group->known && (m->modelled != m->body->cuts.hash || m->copies != m->body->copies.count ||
-                                     gxp_is_moved(group, m));
+        m->wakes |= group->known &&
+                    (m->modelled != m->body->cuts.hash || m->copies != m->body->copies.count || gxp_is_moved(group, m));
         copies += m->body->copies.count;
         affine |= m->body->copies.affine != NULL;
     }

@@ -192,7 +192,7 @@ typedef struct gx_failure {
        as "gx_body_skin". A string literal. NULL: nothing given is to blame */
     const char *field;
     size_t index;   /* of the node, element, triangle, copy ... concerned; SIZE_MAX: no single one is */
-    size_t surface; /* of a cut: which of its surfaces; else SIZE_MAX */
+    size_t surface; /* of a cut: which of its surfaces; of a group: which of its bodies; else SIZE_MAX */
 } gx_failure;
 
 /* Where memory comes from. Zero-initialised: malloc, free and realloc. */

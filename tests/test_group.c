@@ -257,8 +257,8 @@ static gx_anchor anchor_at(gx_body *body, double x, double y, double z) {
     return anchor;
 }
 
-/* What acts on a body of a group, and what comes back, is what acts on it alone: no matter what is beside it. Copies are
-   affine in the body of kind 1, and the other one has elements of another size. */
+/* What acts on a body of a group, and what comes back, is what acts on it alone: no matter what is beside it. Copies
+   are affine in the body of kind 1, and the other one has elements of another size. */
 typedef struct loads {
     gx_anchor at[4];
     gxs_spring spring;

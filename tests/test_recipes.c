@@ -641,6 +641,39 @@ START_TEST(contact) {
 }
 END_TEST
 
+/* A body falls on another one, which is held, and lies there until a spring pulls it off. */
+START_TEST(one_body_on_another) {
+    const gx_region bottom = gx_region_half_space(2, -1, 1e-9);
+    const double top[3] = {0.5, 0.5, 0.9};
+    gx_body *lower = make_body(3, NULL), *upper = make_body(3, NULL);
+    gx_group *group = NULL;
+    gxs_spring spring;
+    gx_anchor at;
+    gx_hit hit;
+    gx_motion motion;
+    gx_view view = view_of(upper);
+    size_t i;
+    OK(gx_body_hold(lower, &bottom, 1, NULL));
+    OK(gx_body_locate(upper, top, 1, &hit, NULL));
+    OK(gx_body_anchor(upper, hit.element, hit.material, &at, NULL));
+    for (i = 0; i < view.copy_count; i++) view.displacement[3 * i + 2] = 1.05;
+    OK(let_bodies_touch(lower, upper, &group));
+    memset(&spring, 0, sizeof spring);
+    spring.target[0] = spring.target[1] = 0.5;
+    spring.target[2] = 4;
+    for (i = 0; i < 60; i++) OK(step_both(group, 1.0 / 60, &spring, &at));
+    OK(gx_body_motion(upper, &motion, 1, NULL));
+    ck_assert_msg(motion.center[2] > 1.2 && motion.center[2] < 1.55, "%g", motion.center[2]);
+    spring.stiffness = 10 * motion.mass;
+    for (i = 0; i < 30; i++) OK(step_both(group, 1.0 / 60, &spring, &at));
+    OK(gx_body_motion(upper, &motion, 1, NULL));
+    ck_assert_msg(motion.center[2] > 2, "%g", motion.center[2]);
+    gx_group_destroy(group);
+    gx_body_destroy(lower);
+    gx_body_destroy(upper);
+}
+END_TEST
+
 /* A body on the ground, which feels its weight, is pushed by a ball, which feels that. */
 START_TEST(contact_with_ball) {
     gx_body *body = make_body(3, NULL);

@@ -517,6 +517,13 @@ namespace Gxfem {
     }
 
     [StructLayout(LayoutKind.Sequential)]
+    public unsafe struct gx_group_contact {
+        public uint body;
+        public uint other_body;
+        public gx_contact contact;
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
     public unsafe struct gx_skin_desc {
         public double crease_angle;
         public int smooth_cuts;
@@ -1108,6 +1115,18 @@ namespace Gxfem {
 
         [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
         public static extern gx_result gx_body_view(IntPtr body, IntPtr view, IntPtr failure);
+
+        [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
+        public static extern gx_result gx_group_contacts(IntPtr group, IntPtr contacts, UIntPtr capacity, IntPtr count, IntPtr failure);
+
+        [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
+        public static extern gx_result gx_group_create(IntPtr bodies, UIntPtr body_count, IntPtr group, IntPtr failure);
+
+        [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
+        public static extern void gx_group_destroy(IntPtr group);
+
+        [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
+        public static extern gx_result gx_group_step(IntPtr group, IntPtr steps, IntPtr report, IntPtr failure);
 
         [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
         public static extern gx_result gx_hit_anchor(IntPtr body, IntPtr hit, IntPtr anchor, IntPtr failure);

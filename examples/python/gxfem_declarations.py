@@ -225,6 +225,14 @@ class gx_contact_event(Structure):
     pass
 
 
+class gx_group(Structure):
+    pass
+
+
+class gx_group_contact(Structure):
+    pass
+
+
 class gx_skin_desc(Structure):
     pass
 
@@ -822,6 +830,12 @@ gx_contact_event._fields_ = [
     ('normal', c_double * 3),
 ]
 
+gx_group_contact._fields_ = [
+    ('body', c_uint32),
+    ('other_body', c_uint32),
+    ('contact', gx_contact),
+]
+
 gx_skin_desc._fields_ = [
     ('crease_angle', c_double),
     ('smooth_cuts', c_int),
@@ -1268,6 +1282,10 @@ FUNCTIONS = {
     'gx_body_step': (c_int, [POINTER(gx_body), POINTER(gx_step_desc), POINTER(gxs_step_report), POINTER(gx_failure)]),
     'gx_body_topology_hash': (c_uint64, [POINTER(gx_body), POINTER(gx_failure)]),
     'gx_body_view': (c_int, [POINTER(gx_body), POINTER(gx_view), POINTER(gx_failure)]),
+    'gx_group_contacts': (c_int, [POINTER(gx_group), POINTER(gx_group_contact), c_size_t, POINTER(c_size_t), POINTER(gx_failure)]),
+    'gx_group_create': (c_int, [POINTER(POINTER(gx_body)), c_size_t, POINTER(POINTER(gx_group)), POINTER(gx_failure)]),
+    'gx_group_destroy': (None, [POINTER(gx_group)]),
+    'gx_group_step': (c_int, [POINTER(gx_group), POINTER(gx_step_desc), POINTER(gxs_step_report), POINTER(gx_failure)]),
     'gx_hit_anchor': (c_int, [POINTER(gx_body), POINTER(gx_hit), POINTER(gx_anchor), POINTER(gx_failure)]),
     'gx_hit_point': (gxs_point, [POINTER(gx_hit)]),
     'gx_region_box': (gx_region, [POINTER(c_double), POINTER(c_double)]),
