@@ -25,6 +25,13 @@ static gx_step_report take(gx_body *body, const gx_step_desc *step) {
     return report;
 }
 
+/* The pairs of a step, without the step */
+static void find_pairs(gx_body *body, const gx_step_desc *desc, gxs_step_desc *step, gxp_touch_surface **surface) {
+    ck_assert_int_eq(gxp_start_contact(body, desc, step, NULL), GX_OK);
+    ck_assert_int_eq(gxp_step_surface(body, surface), GX_OK);
+    ck_assert_int_eq(gxp_attach_contact(body, step, *surface, NULL), GX_OK);
+}
+
 static void hold_below(gx_body *body, double z) {
     const gx_region region = gx_region_half_space(2, -1, z);
     ck_assert_int_eq(gx_body_hold(body, &region, 1, NULL), GX_OK);
@@ -162,7 +169,7 @@ static size_t search_both_ways(gx_body *body, double dt, uint64_t seed) {
     uint32_t i, f;
     memset(&none, 0, sizeof none);
     none.dt = dt;
-    ck_assert_int_eq(gxp_attach_contact(body, &given, &none, &surface, NULL), GX_OK);
+    find_pairs(body, &given, &none, &surface);
     for (i = 0; i < surface->vertex_count; i++) {
         const uint32_t v = surface->places.data[i];
         gxp_touch_pair best = gxp_no_pair(v);
@@ -320,7 +327,7 @@ START_TEST(colliders_are_found) {
     none.dt = given.dt;
     given.colliders = colliders;
     given.collider_count = 4;
-    ck_assert_int_eq(gxp_attach_contact(body, &given, &none, &surface, NULL), GX_OK);
+    find_pairs(body, &given, &none, &surface);
     for (c = 0; c < 4; c++) {
         double *layers = (double *)oracle_memory(NULL, surface->vertex_count + 1, sizeof *layers);
         for (i = 0; i < surface->vertex_count; i++) layers[i] = 0;
