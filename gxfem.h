@@ -701,6 +701,16 @@ typedef struct gx_group_contact {
    Errors: ARGUMENT, CAPACITY (capacity is below *count), SEQUENCE (a body has been cut since the step). */
 GXFEM_API gx_result gx_group_contacts(const gx_group *group, gx_group_contact *contacts, size_t capacity, size_t *count,
                                       gx_failure *failure /* or NULL */);
+typedef struct gx_group_contact_event {
+    uint32_t body, other_body; /* of event.fragment and event.other; other_body is UINT32_MAX: a collider */
+    gx_contact_event event;    /* ids of fragments as their bodies have them */
+} gx_group_contact_event;
+/* What touches now, beside what touched at the last call, as gx_body_contact_events. Of two fragments that with the
+   lower id comes first; ids being equal, that of the first body. Ascending in that order. Errors: ARGUMENT, CAPACITY
+   (capacity is below *count), MEMORY, LIMIT (ids of fragments times bodies are beyond 2^32), SEQUENCE (a body has been
+   cut since the step; gx_body_view); failure.surface: which body */
+GXFEM_API gx_result gx_group_contact_events(gx_group *group, gx_group_contact_event *events, size_t capacity,
+                                            size_t *count, gx_failure *failure /* or NULL */);
 
 /* >>drawing -------------------------------------------------------------------------------------------------------- */
 
@@ -21396,6 +21406,8 @@ struct gx_group {
     /* of a step: forces of springs, slips and forces of pairs that are given, x 3 */
     double *results;
     uint32_t result_capacity;
+    gx_contact_event *told; /* of a call */
+    uint32_t told_capacity;
 };
 
 /* Says which body an error is about. */
@@ -22041,6 +22053,7 @@ GXFEM_API void gx_group_destroy(gx_group *group) {
     gxp_release(&a, group->members, group->member_capacity * sizeof *group->members);
     gxp_release(&a, group->frictions, group->friction_capacity * sizeof(double));
     gxp_release(&a, group->results, group->result_capacity * 3 * sizeof(double));
+    gxp_release(&a, group->told, group->told_capacity * sizeof *group->told);
     gxp_release(&a, group, sizeof *group);
 }
 
@@ -22132,6 +22145,15 @@ GXFEM_API gx_result gx_group_step(gx_group *group, const gx_step_desc *steps, gx
     return GX_OK;
 }
 
+/* Is each member as it was cut in the last step? */
+static gx_result gxp_check_surfaced(const gx_group *group, gx_failure *failure) {
+    uint32_t i;
+    for (i = 0; i < group->count && group->all->touch.kept > 0; i++)
+        if (group->members[i].surfaced != group->members[i].body->cuts.hash)
+            return gxp_blame_member(failure, i, gxp_fail(failure, GX_ERROR_SEQUENCE, "gx_group_step", SIZE_MAX));
+    return GX_OK;
+}
+
 GXFEM_API gx_result gx_group_contacts(const gx_group *group, gx_group_contact *contacts, size_t capacity, size_t *count,
                                       gx_failure *failure) {
     const gxp_touch *t;
@@ -22144,9 +22166,7 @@ GXFEM_API gx_result gx_group_contacts(const gx_group *group, gx_group_contact *c
     *count = 0;
     t = &group->all->touch;
     s = &t->surfaces[0];
-    for (i = 0; i < group->count && t->kept > 0; i++)
-        if (group->members[i].surfaced != group->members[i].body->cuts.hash)
-            return gxp_blame_member(failure, i, gxp_fail(failure, GX_ERROR_SEQUENCE, "gx_group_step", SIZE_MAX));
+    if (gxp_check_surfaced(group, failure) != GX_OK) return GX_ERROR_SEQUENCE;
     for (i = 0; i < t->kept; i++) {
         const gxp_touch_pair *pair = &t->pairs[i];
         if (!(pair->pressed > 0)) continue;
@@ -22162,6 +22182,55 @@ GXFEM_API gx_result gx_group_contacts(const gx_group *group, gx_group_contact *c
     }
     *count = listed;
     return listed > capacity ? gxp_fail(failure, GX_ERROR_CAPACITY, "capacity", SIZE_MAX) : gxp_end(failure, GX_OK);
+}
+
+/* Names the fragments of all members, by number: id x members + member. So events of all know them apart. */
+static gx_result gxp_name_fragments(gx_group *group, gx_failure *failure) {
+    gxp_snapshot *snapshot = &group->all->snapshot;
+    uint32_t i, f;
+    snapshot->count = 0;
+    for (i = 0; i < group->count; i++) {
+        const gx_body *body = group->members[i].body;
+        gx_result result = GX_OK;
+        if (body->snapshot.stale)
+            return gxp_blame_member(failure, i, gxp_fail(failure, GX_ERROR_SEQUENCE, "gx_body_view", SIZE_MAX));
+        if (body->snapshot.next_id > UINT32_MAX / group->count) result = GX_ERROR_LIMIT;
+        if (result == GX_OK) result = gxp_grow_rows(group->all, GXP_SNAPSHOT, body->snapshot.count);
+        if (gxp_end(failure, result) != GX_OK) return gxp_blame_member(failure, i, result);
+        for (f = 0; f < body->snapshot.count; f++)
+            snapshot->id[snapshot->count++] = body->snapshot.id[f] * group->count + i;
+    }
+    return GX_OK;
+}
+
+GXFEM_API gx_result gx_group_contact_events(gx_group *group, gx_group_contact_event *events, size_t capacity,
+                                            size_t *count, gx_failure *failure) {
+    gx_result result;
+    size_t i, told;
+    if (group == NULL) return gxp_refuse(failure, "group");
+    if (count == NULL) return gxp_refuse(failure, "count");
+    if (events == NULL && capacity > 0) return gxp_refuse(failure, "events");
+    *count = 0;
+    result = gxp_check_surfaced(group, failure);
+    if (result == GX_OK) result = gxp_name_fragments(group, failure);
+    if (result != GX_OK) return result;
+    result = gx_body_contact_events(group->all, NULL, 0, &told, failure);
+    if (result == GX_OK || result != GX_ERROR_CAPACITY) return result;
+    *count = told;
+    if (told > capacity) return result;
+    result =
+        gxp_reserve(&group->all->config.allocator, &group->told, sizeof *group->told, 0, &group->told_capacity, told);
+    if (result == GX_OK) result = gx_body_contact_events(group->all, group->told, told, &told, failure);
+    if (gxp_end(failure, result) != GX_OK) return result;
+    for (i = 0; i < told; i++) {
+        gx_group_contact_event *to = &events[i];
+        to->event = group->told[i];
+        to->body = to->event.fragment % group->count;
+        to->event.fragment /= group->count;
+        to->other_body = to->event.collider == GXP_NONE ? to->event.other % group->count : GXP_NONE;
+        to->event.other /= group->count;
+    }
+    return GX_OK;
 }
 
 #undef GXP_CROWD

@@ -3,6 +3,7 @@
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
 #include "body.h"
+#include "pool.h"
 
 enum { MOST_BODIES = 3, MOST_PIECES = 16 };
 
@@ -16,6 +17,7 @@ typedef struct crowd {
 typedef struct make_desc { /* of a body's kind */
     double affine_below, friction;
     const gx_allocator *allocator;
+    const gx_jobs *jobs;
 } make_desc;
 
 static gx_body *make_body(const workload *w, const make_desc *like) {
@@ -26,6 +28,7 @@ static gx_body *make_body(const workload *w, const make_desc *like) {
     contact.friction = like->friction;
     desc.affine_below = like->affine_below;
     if (like->allocator != NULL) desc.allocator = *like->allocator;
+    if (like->jobs != NULL) desc.jobs = *like->jobs;
     ck_assert_int_eq(gx_body_create(&desc, &made, NULL), GX_OK);
     ck_assert_int_eq(gx_body_contact(made, &contact, NULL), GX_OK);
     return made;
@@ -162,7 +165,7 @@ static void describe_steps(int kind, gx_step_desc *steps, size_t count) {
 
 /* A group of one does what its body does alone, to the bit. */
 START_TEST(one_is_as_alone) {
-    const make_desc like = {_i == AFFINE ? 1 : 0, 0.3, NULL};
+    const make_desc like = {_i == AFFINE ? 1 : 0, 0.3, NULL, NULL};
     const gx_collider floor = ground(0.4);
     crowd c;
     gx_body *alone;
@@ -207,7 +210,7 @@ END_TEST
 
 /* Two bodies that fall on each other do what one body of both meshes does. Sums round differently. */
 START_TEST(two_are_as_one) {
-    const make_desc like = {0, 0.3, NULL};
+    const make_desc like = {0, 0.3, NULL, NULL};
     crowd c = two_blocks(&like);
     workload both = united(&c.mesh[0], &c.mesh[1]);
     gx_body *one = make_body(&both, &like);
@@ -298,7 +301,7 @@ static void act_on(gx_body *body, loads *l, gx_step_desc *step) {
 }
 
 START_TEST(loads_are_the_bodies_own) {
-    const make_desc like = {_i ? 1 : 0, 0.3, NULL}, plain = {0, 0, NULL};
+    const make_desc like = {_i ? 1 : 0, 0.3, NULL, NULL}, plain = {0, 0, NULL, NULL};
     const gx_region root = gx_region_half_space(0, -1, 5.1);
     gx_body *alone;
     crowd c;
@@ -345,7 +348,7 @@ END_TEST
 
 /* Bodies that collide in space keep the sum of their momenta. They rub by the mean of their coefficients. */
 START_TEST(momentum_stays) {
-    const make_desc like = {0, 0.8, NULL}, other = {0, 0, NULL};
+    const make_desc like = {0, 0.8, NULL, NULL}, other = {0, 0, NULL, NULL};
     crowd c = two_blocks(&like);
     gx_step_desc steps[2];
     double before[3], after[3];
@@ -387,7 +390,7 @@ END_TEST
 
 /* Saved and read again, or put back to a clone, bodies go on in a new group with the same bits. */
 START_TEST(goes_on_after_saving) {
-    const make_desc like = {0, 0.4, NULL};
+    const make_desc like = {0, 0.4, NULL, NULL};
     crowd c = two_blocks(&like), d;
     gx_step_desc steps[2];
     uint64_t state[2];
@@ -424,7 +427,7 @@ END_TEST
 
 /* A heap falls asleep, and wakes where it is touched or cut. */
 START_TEST(bodies_sleep) {
-    const make_desc like = {0, 0.5, NULL};
+    const make_desc like = {0, 0.5, NULL, NULL};
     const gx_collider floor = ground(0.5);
     crowd c = two_blocks(&like);
     gx_step_desc steps[2];
@@ -459,7 +462,7 @@ static int none_of_two(void *user, uint32_t fragment, uint32_t other, uint32_t c
 
 /* Fragments of the second body follow those of the first one. */
 START_TEST(filters_know_all_fragments) {
-    const make_desc like = {0, 0.3, NULL};
+    const make_desc like = {0, 0.3, NULL, NULL};
     crowd c = two_blocks(&like);
     gx_step_desc steps[2];
     uint32_t first = 2;
@@ -482,7 +485,7 @@ END_TEST
 
 /* Bodies may be stepped alone, emptied and cut between steps of the group. */
 START_TEST(bodies_go_their_own_way) {
-    const make_desc like = {0, 0.3, NULL};
+    const make_desc like = {0, 0.3, NULL, NULL};
     crowd c = two_blocks(&like);
     workload box = wl_empty();
     gx_step_desc steps[2];
@@ -513,7 +516,7 @@ static void expect(gx_result result, gx_result due, const gx_failure *failure, c
 }
 
 START_TEST(refusals) {
-    const make_desc like = {0, 0.3, NULL};
+    const make_desc like = {0, 0.3, NULL, NULL};
     crowd c = two_blocks(&like);
     gx_body *twice[2];
     gx_group *group = NULL;
@@ -578,7 +581,7 @@ END_TEST
 START_TEST(without_memory) {
     memory m = plenty();
     const gx_allocator scarce = allocator_of(&m);
-    make_desc like = {0, 0.3, NULL};
+    make_desc like = {0, 0.3, NULL, NULL};
     crowd c;
     gx_step_desc steps[2];
     gx_result result = GX_ERROR_MEMORY;
@@ -617,6 +620,94 @@ START_TEST(without_memory) {
 }
 END_TEST
 
+/* Events name bodies and fragments, as they begin, go on and end. */
+START_TEST(events_name_bodies) {
+    const make_desc like = {0, 0.3, NULL, NULL};
+    const gx_collider floor = ground(0.5);
+    crowd c = two_blocks(&like);
+    gx_step_desc steps[2];
+    gx_group_contact_event events[16];
+    gx_failure f;
+    size_t count, i, k, began = 0, with_floor = 0;
+    double sum = 0;
+    int n;
+    describe_steps(PLAIN, steps, 2);
+    steps[0].colliders = &floor;
+    steps[0].collider_count = 1;
+    ck_assert_int_eq(gx_group_contact_events(c.group, events, 16, &count, NULL), GX_OK);
+    ck_assert_uint_eq(count, 0);
+    for (n = 0; n < 60; n++) {
+        (void)step_all(&c, steps);
+        ck_assert_int_eq(gx_group_contact_events(c.group, events, 16, &count, NULL), GX_OK);
+        for (i = 0; i < count; i++) {
+            const gx_group_contact_event *e = &events[i];
+            ck_assert_uint_lt(e->body, 2);
+            ck_assert_uint_eq(e->event.fragment, 1); /* each body's first */
+            if (e->event.collider != UINT32_MAX) {
+                ck_assert_uint_eq(e->other_body, UINT32_MAX);
+                ck_assert_uint_eq(e->event.other, 0);
+                ck_assert_uint_eq(e->body, 0);
+                with_floor++;
+                continue;
+            }
+            ck_assert(e->body == 0 && e->other_body == 1 && e->event.other == 1);
+            began += e->event.change == GX_CONTACT_BEGAN;
+            sum = e->event.force[2];
+        }
+    }
+    ck_assert_uint_ge(began, 1);
+    ck_assert_uint_gt(with_floor, 10);
+    ck_assert_msg(fabs(sum + 9.81 * 1000) < 1500, "%g N on the lower one", sum);
+    expect(gx_group_contact_events(NULL, events, 16, &count, &f), GX_ERROR_ARGUMENT, &f, "group", SIZE_MAX);
+    expect(gx_group_contact_events(c.group, NULL, 16, &count, &f), GX_ERROR_ARGUMENT, &f, "events", SIZE_MAX);
+    expect(gx_group_contact_events(c.group, events, 16, NULL, &f), GX_ERROR_ARGUMENT, &f, "count", SIZE_MAX);
+    expect(gx_group_contact_events(c.group, events, 1, &count, &f), GX_ERROR_CAPACITY, &f, "capacity", SIZE_MAX);
+    cut_across(c.body[1], 0, 0.7);
+    expect(gx_group_contact_events(c.group, events, 16, &count, &f), GX_ERROR_SEQUENCE, &f, "gx_group_step", 1);
+    (void)step_all(&c, steps);
+    expect(gx_group_contact_events(c.group, events, 16, &count, &f), GX_ERROR_SEQUENCE, &f, "gx_body_view", 1);
+    (void)view_of(c.body[1]);
+    c.body[0]->snapshot.next_id += UINT32_MAX / 2; /* as if so many had been */
+    ck_assert_int_eq(gx_group_contact_events(c.group, events, 16, &count, &f), GX_ERROR_LIMIT);
+    ck_assert_uint_eq(f.surface, 0);
+    c.body[0]->snapshot.next_id -= UINT32_MAX / 2;
+    ck_assert_int_eq(gx_group_contact_events(c.group, events, 16, &count, NULL), GX_OK);
+    for (i = k = 0; i < count; i++)
+        k += events[i].body == 0 && events[i].event.other == 2 && events[i].event.change == GX_CONTACT_BEGAN;
+    ck_assert_uint_eq(k, 1); /* the new piece of the second body lies on the first one */
+    let_go(&c);
+}
+END_TEST
+
+/* The same bits with threads of the host's, which the group takes from its first body, and with tasks in any order */
+START_TEST(threads_do_not_matter) {
+    uint64_t states[4], order = 5;
+    int i, n;
+    for (i = 0; i < 4; i++) {
+        pool threads;
+        gx_jobs jobs;
+        make_desc like = {0, 0.3, NULL, NULL};
+        crowd c;
+        gx_step_desc steps[2];
+        jobs.parallel_for = i == 3 ? shuffled_for : pool_for;
+        jobs.user = i == 3 ? (void *)&order : (void *)&threads;
+        if (i == 1 || i == 2) pool_open(&threads, (size_t)i + 1);
+        if (i > 0) like.jobs = &jobs;
+        c = two_blocks(&like);
+        hold_low(c.body[0], 0.1);
+        describe_steps(PLAIN, steps, 2);
+        for (n = 0; n < 20; n++) {
+            if (n == 10) cut_across(c.body[1], 0, 0.7);
+            (void)step_all(&c, steps);
+        }
+        states[i] = gx_body_state_hash(c.body[0]) ^ 3 * gx_body_state_hash(c.body[1]);
+        ck_assert(states[i] == states[0]);
+        let_go(&c);
+        if (i == 1 || i == 2) pool_close(&threads);
+    }
+}
+END_TEST
+
 static Suite *suite(void) {
     Suite *s = suite_create("group");
     TCase *tests = tcase_create("group");
@@ -629,6 +720,8 @@ static Suite *suite(void) {
     tcase_add_test(tests, bodies_sleep);
     tcase_add_test(tests, filters_know_all_fragments);
     tcase_add_test(tests, bodies_go_their_own_way);
+    tcase_add_test(tests, events_name_bodies);
+    tcase_add_test(tests, threads_do_not_matter);
     tcase_add_test(tests, refusals);
     tcase_add_loop_test(tests, without_memory, 0, 3);
     suite_add_tcase(s, tests);

@@ -524,6 +524,13 @@ namespace Gxfem {
     }
 
     [StructLayout(LayoutKind.Sequential)]
+    public unsafe struct gx_group_contact_event {
+        public uint body;
+        public uint other_body;
+        public gx_contact_event @event;
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
     public unsafe struct gx_skin_desc {
         public double crease_angle;
         public int smooth_cuts;
@@ -1115,6 +1122,9 @@ namespace Gxfem {
 
         [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
         public static extern gx_result gx_body_view(IntPtr body, IntPtr view, IntPtr failure);
+
+        [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
+        public static extern gx_result gx_group_contact_events(IntPtr group, IntPtr events, UIntPtr capacity, IntPtr count, IntPtr failure);
 
         [DllImport("gxfem", CallingConvention = CallingConvention.Cdecl)]
         public static extern gx_result gx_group_contacts(IntPtr group, IntPtr contacts, UIntPtr capacity, IntPtr count, IntPtr failure);

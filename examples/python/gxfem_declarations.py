@@ -233,6 +233,10 @@ class gx_group_contact(Structure):
     pass
 
 
+class gx_group_contact_event(Structure):
+    pass
+
+
 class gx_skin_desc(Structure):
     pass
 
@@ -836,6 +840,12 @@ gx_group_contact._fields_ = [
     ('contact', gx_contact),
 ]
 
+gx_group_contact_event._fields_ = [
+    ('body', c_uint32),
+    ('other_body', c_uint32),
+    ('event', gx_contact_event),
+]
+
 gx_skin_desc._fields_ = [
     ('crease_angle', c_double),
     ('smooth_cuts', c_int),
@@ -1282,6 +1292,7 @@ FUNCTIONS = {
     'gx_body_step': (c_int, [POINTER(gx_body), POINTER(gx_step_desc), POINTER(gxs_step_report), POINTER(gx_failure)]),
     'gx_body_topology_hash': (c_uint64, [POINTER(gx_body), POINTER(gx_failure)]),
     'gx_body_view': (c_int, [POINTER(gx_body), POINTER(gx_view), POINTER(gx_failure)]),
+    'gx_group_contact_events': (c_int, [POINTER(gx_group), POINTER(gx_group_contact_event), c_size_t, POINTER(c_size_t), POINTER(gx_failure)]),
     'gx_group_contacts': (c_int, [POINTER(gx_group), POINTER(gx_group_contact), c_size_t, POINTER(c_size_t), POINTER(gx_failure)]),
     'gx_group_create': (c_int, [POINTER(POINTER(gx_body)), c_size_t, POINTER(POINTER(gx_group)), POINTER(gx_failure)]),
     'gx_group_destroy': (None, [POINTER(gx_group)]),
