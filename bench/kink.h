@@ -10,7 +10,8 @@
    The second equation gives a, for each element by itself. So there are no new unknowns. The element's energy is that
    of both parts at their gradients, a function of F: it goes to the solver as the caller's own material, GXS_CUSTOM.
    [Li, Lin, Wu 2003: immersed finite elements] Displacements of neighbours differ by as little as they bend at the
-   interface: the elements do not conform there. Linear elasticity only, where a is linear in F. */
+   interface: the elements do not conform there. Linear elasticity only, where a is linear in F. With materials that
+   differ by much more than ten times, the equation for a is nearly singular in some elements: see docs/DECISIONS.md. */
 #ifndef BENCH_KINK_H
 #define BENCH_KINK_H
 
