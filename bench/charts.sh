@@ -352,9 +352,9 @@ shapes() {
     echo 'set terminal svg size 1180,860 font "sans,12" background "white"'
     echo "set output '$charts/shapes.svg'"
     for series in one two; do
-        for mesh in carved mapped stuffed; do
+        for mesh in carved mapped stuffed kinked; do
             echo "\$${series}_$mesh << EOD"
-            awk -F, -v series=$series -v mesh=$mesh '$1 == series && $2 == mesh { print $6, $9, -$7, $8 }' "$tables/shapes.csv"
+            awk -F, -v series=$series -v mesh=$mesh '$1 == series && $2 == mesh { print $6, $9 == "" ? "NaN" : $9, -$7, $8 }' "$tables/shapes.csv"
             echo "EOD"
         done
     done
@@ -368,7 +368,9 @@ END
         [ $series = two ] || fitted="$fitted, \$one_stuffed using COLUMN:3 with linespoints ls 5 title 'stuffed mesh, deflection'"
         for column in 1 2; do
             [ $column = 1 ] && { echo 'set xlabel "unknowns"; set xrange [300:60000]'; slope="600 * x ** (-2.0 / 3) / 8"; } || { echo 'set xlabel "a time step, ms"; set xrange [0.05:8]'; slope=NaN; }
-            echo "plot \$${series}_carved using $column:3 with linespoints ls 1 title 'carved, deflection', \$${series}_carved using $column:4 with linespoints ls 8 title 'its frequency', $(echo "$fitted" | sed "s/COLUMN/$column/g"), $slope with lines ls 7 title '$([ $column = 1 ] && echo second order)'"
+            kinked="" # without steps
+            [ $series$column = two1 ] && kinked=", \$two_kinked using 1:3 with linespoints ls 2 title 'carved with kinks, deflection'"
+            echo "plot \$${series}_carved using $column:3 with linespoints ls 1 title 'carved, deflection', \$${series}_carved using $column:4 with linespoints ls 8 title 'its frequency', $(echo "$fitted" | sed "s/COLUMN/$column/g")$kinked, $slope with lines ls 7 title '$([ $column = 1 ] && echo second order)'"
         done
     done
     echo "unset multiplot"

@@ -13,13 +13,13 @@
    as the ellipsoid.
 
    series, and what its columns mean:
-       one, two    of so many materials. mesh: carved, mapped, stuffed; n: cells along the longest side, cubes along an
-                   edge; deflection and frequency as shares of the references, less 1; step_ms: a time step of the body,
-                   stable neo-Hookean, one end held, dt 1/60 s, the median of 60; iterations: of
-                   conjugate gradients in each
-       cost        making bodies of a bumpy ellipsoid: seconds, the median of 5; megabytes held and at most
-       model       a model: moments: the largest error of volume, centre and inertia beside exact sums over the
-                   triangles of its outline; area: that of the skin. One that is refused has neither. */
+       one, two    of so many materials. mesh: carved, mapped, stuffed; kinked: carved, and what the interface goes
+                   through has a kink there (kink.h); n: cells along the longest side, cubes along an edge; deflection
+   and frequency as shares of the references, less 1; step_ms: a time step of the body, stable neo-Hookean, one end
+   held, dt 1/60 s, the median of 60; iterations: of conjugate gradients in each cost        making bodies of a bumpy
+   ellipsoid: seconds, the median of 5; megabytes held and at most model       a model: moments: the largest error of
+   volume, centre and inertia beside exact sums over the triangles of its outline; area: that of the skin. One that is
+   refused has neither. */
 #define _POSIX_C_SOURCE 200809L
 #define GXFEM_IMPLEMENTATION
 #include "../gxfem.h"
@@ -32,11 +32,12 @@
 #include "clock.h"
 #include "csv.h"
 #include "progress.h"
+#include "kink.h"
 
-enum { CARVED, MAPPED, STUFFED, STEPS = 12, PASSES = 5, MOST_ROWS = 19, MAKES = 5, ROUNDS = 4, LONG = 5 };
+enum { CARVED, MAPPED, STUFFED, KINKED, STEPS = 12, PASSES = 5, MOST_ROWS = 20, MAKES = 5, ROUNDS = 4, LONG = 5 };
 
 static const double half_axes[3] = {1, 0.6, 0.45}, core = 0.5, young[2] = {1e5, 1e6}, density[2] = {1000, 2000};
-static const char *const mesh_names[3] = {"carved", "mapped", "stuffed"};
+static const char *const mesh_names[4] = {"carved", "mapped", "stuffed", "kinked"};
 static int small;
 
 /* ---- bodies ---- */
@@ -202,6 +203,7 @@ static gx_body *stuff(size_t n, gxs_material_kind kind) {
 /* The body's model in a solver of its own */
 typedef struct problem {
     gxs_model model;
+    kinked kinks; /* if it has such */
     gxs_solver *solver;
     size_t count;          /* 3 x copies */
     double *rigid[6];      /* fields that move the body as a whole, orthonormal by mass */
@@ -256,11 +258,12 @@ static void normalise(problem *p, double *u) {
     for (i = 0; i < p->count; i++) u[i] /= length;
 }
 
-static void open_problem(problem *p, gx_body *body) {
+static void open_problem(problem *p, gx_body *body, int with_kinks) {
     size_t i;
     int r, k;
     memset(p, 0, sizeof *p);
     expect(gx_body_model(body, &p->model, NULL) == GX_OK, "no model");
+    if (with_kinks) kink_add(&p->kinks, body, &p->model);
     p->count = 3 * p->model.copy_count;
     p->force = (double *)memory(p->count, sizeof(double));
     p->given = (double *)memory(p->count, sizeof(double));
@@ -286,6 +289,7 @@ static void close_problem(problem *p) {
     for (r = 0; r < 6; r++) free(p->rigid[r]);
     free(p->force);
     free(p->given);
+    kink_free(&p->kinks);
     gxs_solver_destroy(p->solver);
 }
 
@@ -314,12 +318,12 @@ static double solve_static(problem *p, double *u) {
 }
 
 /* Work of the bending force, per its square; then the lowest frequency, Hz, from that field on */
-static void measure(gx_body *body, double *deflection, double *frequency) {
+static void measure(gx_body *body, int with_kinks, double *deflection, double *frequency) {
     double *u, square = 0;
     problem p;
     size_t i;
     int round;
-    open_problem(&p, body);
+    open_problem(&p, body, with_kinks);
     u = (double *)memory(p.count, sizeof *u);
     for (i = 0; i < p.model.copy_count; i++) p.given[3 * i + 2] = p.model.positions[3 * i] * p.model.positions[3 * i];
     *deflection = solve_static(&p, u);
@@ -377,9 +381,9 @@ static void count_body(row *r, gx_body *body) {
 }
 
 static gx_body *make_body(int kind, size_t n, const workload *w, gxs_material_kind material) {
-    return kind == CARVED ? carve(w, (uint32_t)n, material, NULL)
-         : kind == MAPPED ? map(n, (int)w->surface_count, material)
-                          : stuff(n, material);
+    return kind == MAPPED  ? map(n, (int)w->surface_count, material)
+         : kind == STUFFED ? stuff(n, material)
+                           : carve(w, (uint32_t)n, material, NULL);
 }
 
 /* ---- time steps ---- */
@@ -432,14 +436,14 @@ static void take_steps(motion *motions, row *rows, size_t count) {
 
 /* Carved and fitted bodies of one or two materials */
 static void run_stiffness(int materials) {
-    static const size_t sizes[3][8] = {
-        {6, 8, 12, 16, 24, 32, 0}, {4, 6, 8, 12, 16, 20, 24, 0}, {6, 8, 12, 16, 24, 32, 0}};
-    const size_t finest[2] = {small ? 8 : 20, small ? 12 : 32};
+    static const size_t sizes[4][8] = {
+        {6, 8, 12, 16, 24, 32, 0}, {4, 6, 8, 12, 16, 20, 24, 0}, {6, 8, 12, 16, 24, 32, 0}, {6, 8, 12, 16, 24, 32, 0}};
+    const size_t finest[2] = {small ? 8 : 28, small ? 12 : 44};
     const char *series = materials == 1 ? "one" : "two";
     workload w = wl_empty();
     motion *motions = (motion *)memory(MOST_ROWS, sizeof *motions);
     row rows[MOST_ROWS];
-    size_t count = 0;
+    size_t count = 0, moving = 0;
     double value[2][2], truth[2];
     int kind, i;
     for (i = 0; i < materials; i++)
@@ -447,14 +451,15 @@ static void run_stiffness(int materials) {
     for (i = 0; i < 2; i++) {
         gx_body *body = map(finest[i], materials, GXS_LINEAR);
         progress_draw("shapes", (size_t)i, 2, "reference");
-        measure(body, &value[i][0], &value[i][1]);
+        measure(body, 0, &value[i][0], &value[i][1]);
         gx_body_destroy(body);
     }
     for (i = 0; i < 2; i++) { /* the error of linear elements is as the square of their size */
         const double ratio = pow((double)finest[1] / (double)finest[0], 2);
         truth[i] = value[1][i] + (value[1][i] - value[0][i]) / (ratio - 1);
     }
-    for (kind = 0; kind < (materials == 1 ? 3 : 2); kind++)
+    for (kind = 0; kind < 4; kind++) {
+        if (kind == (materials == 1 ? KINKED : STUFFED)) continue;
         for (i = 0; sizes[kind][i] > 0 && sizes[kind][i] <= (small ? 8 : 99); i++) {
             row *r = &rows[count];
             gx_body *body;
@@ -462,15 +467,17 @@ static void run_stiffness(int materials) {
             *r = empty_row(series, mesh_names[kind], sizes[kind][i]);
             progress_draw("shapes", (size_t)i, 7, mesh_names[kind]);
             body = make_body(kind, r->n, &w, GXS_LINEAR);
-            measure(body, &r->deflection, &r->frequency);
+            measure(body, kind == KINKED, &r->deflection, &r->frequency);
             r->deflection = r->deflection / truth[0] - 1;
             r->frequency = r->frequency / truth[1] - 1;
-            r->triangles = kind == CARVED ? w.surfaces[0].triangle_count : 0;
+            r->triangles = kind == CARVED || kind == KINKED ? w.surfaces[0].triangle_count : 0;
             count_body(r, body);
             gx_body_destroy(body);
-            begin_motion(&motions[count++], make_body(kind, r->n, &w, GXS_STABLE_NEO_HOOKEAN));
+            if (kind != KINKED) begin_motion(&motions[moving++], make_body(kind, r->n, &w, GXS_STABLE_NEO_HOOKEAN));
+            count++;
         }
-    take_steps(motions, rows, count);
+    }
+    take_steps(motions, rows, moving); /* kinked ones come last */
     for (i = 0; i < (int)count; i++) print_row(&rows[i]);
     free(motions);
     wl_free(&w);
