@@ -397,7 +397,7 @@ START_TEST(slices_bend_both_ways_alike) {
     static const double low[3] = {0.37, 0.07, 0.73};
     const double t = 0.1, k = 4, rod = 0.42516 * 8, young = 12 * 1000 * 1e-3 * pow(8, 3) / (k * t * t);
     const double down = drop_of(1, low[_i], t, young, -1e-3), up = drop_of(1, low[_i], t, young, 1e-3);
-    ck_assert_msg(fabs(down - up) < 0.06 * rod, "%d: %g down, %g up", _i, down / 8, up / 8);
+    ck_assert_msg(fabs(down - up) < 0.1 * rod, "%d: %g down, %g up", _i, down / 8, up / 8);
     ck_assert_msg(fmin(down, up) > 0.87 * rod && fmax(down, up) < 1.01 * rod, "%d: %g, %g", _i, down / rod, up / rod);
 }
 END_TEST
