@@ -8552,28 +8552,33 @@ static void gxp_add_rotation(const gxp_cell *cell, double x[4][3], double v[4][3
 }
 
 /* Four points of a cell and their shares of the copies, which integrate all quadratics over the cell with a quarter of
-   its mass each: c + L (1,1,1), (1,-1,-1), (-1,1,-1), (-1,-1,1), with c its centre and L L^T its covariance, in
-   barycentric coordinates. */
+   its mass each, in barycentric coordinates: c + L t, with c its centre and L L^T its covariance. The columns of L go
+   by the largest pivot left, as the solver's. */
 static void gxp_four_points(const double mass[10], double whole, double share[4][4]) {
-    static const int sign[4][3] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
-    double root[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, center[4];
-    int i, j, k;
+    static const double root2 = 1.4142135623730951;
+    const double at[4][3] = {{1, 0, root2}, {1, 0, -root2}, {-1, root2, 0}, {-1, -root2, 0}};
+    double left[3][3], root[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, center[4];
+    int done[3] = {0, 0, 0}, step, i, j, k;
     for (i = 0; i < 4; i++) center[i] = gxp_mass_row(mass, i) / whole;
     for (i = 0; i < 3; i++)
-        for (j = 0; j <= i; j++) {
-            double sum = mass[gxp_mass_at[i + 1][j + 1]] / whole - center[i + 1] * center[j + 1];
-            for (k = 0; k < j; k++) sum -= root[i][k] * root[j][k];
-            if (i == j)
-                root[i][i] = sum > 0 ? sqrt(sum) : 0;
-            else
-                root[i][j] = root[j][j] > 0 ? sum / root[j][j] : 0;
+        for (j = 0; j < 3; j++) left[i][j] = mass[gxp_mass_at[i + 1][j + 1]] / whole - center[i + 1] * center[j + 1];
+    for (step = 0; step < 3; step++) {
+        for (i = 0, k = -1; i < 3; i++)
+            if (!done[i] && (k < 0 || left[i][i] > left[k][k])) k = i;
+        if (!(left[k][k] > 0)) break;
+        done[k] = 1;
+        root[k][step] = sqrt(left[k][k]);
+        for (i = 0; i < 3; i++) {
+            if (done[i]) continue;
+            root[i][step] = left[i][k] / root[k][step];
+            for (j = 0; j <= i; j++) left[i][j] = left[j][i] -= done[j] ? 0 : root[i][step] * root[j][step];
         }
+    }
     for (k = 0; k < 4; k++) {
         share[k][0] = 1;
-        for (i = 1; i < 4; i++) {
-            share[k][i] = center[i];
-            for (j = 0; j < i; j++) share[k][i] += sign[k][j] * root[i - 1][j];
-            share[k][0] -= share[k][i];
+        for (i = 0; i < 3; i++) {
+            share[k][i + 1] = center[i + 1] + at[k][0] * root[i][0] + at[k][1] * root[i][1] + at[k][2] * root[i][2];
+            share[k][0] -= share[k][i + 1];
         }
     }
 }

@@ -3185,9 +3185,9 @@ static int gxsp_supports(const gxs_element *element, int i) {
     return rows[i] > 0;
 }
 
-/* Cholesky factor of a symmetric 3x3, which is overwritten. The largest pivot goes first, so that rounding stays small
- * where the matrix is singular or indefinite. Then columns are rotated, which does not change factor factor^T, until
- * it is lower triangular. */
+/* A factor of a symmetric 3x3, which is overwritten: c = factor factor^T. Cholesky's method with the largest pivot
+ * first, so that rounding stays small where the matrix is singular or indefinite. Columns are in the order of pivots:
+ * the last one is across what is flat. */
 static void gxsp_factor3(double c[3][3], double factor[3][3]) {
     int done[3] = {0, 0, 0}, step, i, j, k;
     memset(factor, 0, 9 * sizeof(double));
@@ -3207,6 +3207,11 @@ static void gxsp_factor3(double c[3][3], double factor[3][3]) {
         for (i = 0; i < 3; i++)
             for (j = 0; j < 3 && !done[i]; j++) c[i][j] -= factor[i][step] * factor[j][step];
     }
+}
+
+/* Rotates columns, which does not change factor factor^T, until the factor is lower triangular. */
+static void gxsp_triangle3(double factor[3][3]) {
+    int i, j, k;
     for (i = 0; i < 2; i++)
         for (j = i + 1; j < 3; j++) {
             const double length = sqrt(factor[i][i] * factor[i][i] + factor[i][j] * factor[i][j]);
@@ -3228,6 +3233,7 @@ static double gxsp_place_moments(const double *mass, const uint8_t *order, gxsp_
         for (j = 0; j < 3; j++)
             covariance[i][j] = mass[gxsp_packed_mass[own[i]][own[j]]] / all - centre[own[i]] * centre[own[j]];
     gxsp_factor3(covariance, root);
+    gxsp_triangle3(root);
     for (i = 0; i < 3; i++) {
         moments->centre[i][lane] = (float)rounded[own[i]];
         for (j = 0; j <= i; j++) moments->root[i * (i + 1) / 2 + j][lane] = (float)root[i][j];
@@ -3901,9 +3907,12 @@ static void gxsp_groups_begin(gxsp_system *system, const gxs_model *model) {
 }
 
 /* Shape functions at the four points of an element: x_p = c + L t_p, with L L^T the covariance of its mass. They
- * integrate every quadratic exactly, with equal weights. shape: [p][i] */
+ * integrate every quadratic exactly, with equal weights. Two points are in the middle of a sheet, one above, one below
+ * where the two others are not: products of its bend with squares along it, which large rotations make, then have the
+ * mean 0 as they should. Other rotations of t make it softer one way than the other. shape: [p][i] */
 static void gxsp_four_points(const gxs_element *element, double shape[4][4]) {
-    static const int sign[4][3] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+    static const double root2 = 1.4142135623730951;
+    const double at[4][3] = {{1, 0, root2}, {1, 0, -root2}, {-1, root2, 0}, {-1, -root2, 0}};
     static const double whole[10] = {2, 1, 1, 1, 2, 1, 1, 2, 1, 2};
     double centre[4], rounded[4], covariance[3][3], root[3][3];
     const double *mass = element->mass;
@@ -3917,8 +3926,7 @@ static void gxsp_four_points(const gxs_element *element, double shape[4][4]) {
     for (p = 0; p < 4; p++) {
         shape[p][0] = 1;
         for (i = 0; i < 3; i++) {
-            shape[p][i + 1] =
-                centre[i + 1] + sign[p][0] * root[i][0] + sign[p][1] * root[i][1] + sign[p][2] * root[i][2];
+            shape[p][i + 1] = centre[i + 1] + at[p][0] * root[i][0] + at[p][1] * root[i][1] + at[p][2] * root[i][2];
             shape[p][0] -= shape[p][i + 1];
         }
     }

@@ -331,28 +331,28 @@ END_TEST
 
 /* ---- steps ---- */
 
-/* The largest drop of material points at x = length, by fragment */
-static void find_tips(gx_body *body, double length, double *tips) {
+/* The farthest way along z of material points at x = length, by fragment. way: -1 downwards, 1 upwards */
+static void find_tips(gx_body *body, double length, double way, double *tips) {
     gx_skin skin;
     double *x;
     size_t i;
-    int k;
     ck_assert_int_eq(gx_body_skin(body, NULL, &skin, NULL), GX_OK);
     x = (double *)oracle_memory(NULL, 3 * skin.vertex_count + 1, sizeof *x);
     ck_assert_int_eq(gx_body_skin_positions(body, x, NULL), GX_OK);
     for (i = 0; i < 3 * skin.triangle_count; i++) {
         const uint32_t v = skin.triangles[i], f = skin.triangle_fragment[i / 3];
         if (skin.vertex_rest[3 * (size_t)v] < length - 1e-9) continue;
-        for (k = 2; k < 3; k++) tips[f] = fmax(tips[f], skin.vertex_rest[3 * (size_t)v + 2] - x[3 * (size_t)v + 2]);
+        tips[f] = fmax(tips[f], way * (x[3 * (size_t)v + 2] - skin.vertex_rest[3 * (size_t)v + 2]));
     }
     free(x);
 }
 
-static double drop_of(int affine, double low, double thick, double young) {
+/* How far a slice of a plate of 8 x 2 cubes hangs under gravity, upwards if that is positive */
+static double drop_of(int affine, double low, double thick, double young, double gravity) {
     workload w = grid(8, 2, 1, 5);
     gx_body_desc desc = desc_of(&w);
     gx_body *body = NULL;
-    gx_step_desc step = step_of(0, -1e-3);
+    gx_step_desc step = step_of(0, gravity);
     gx_view view;
     double tips[4] = {0, 0, 0, 0};
     size_t f;
@@ -365,13 +365,13 @@ static double drop_of(int affine, double low, double thick, double young) {
     cut_by(body, &w, 0, 2);
     hold_left(body);
     step.integrator = GXS_STATIC;
-    step.newton_iterations = 10;
+    step.newton_iterations = 200;
     step.newton_tolerance = 1e-9;
     step.cg_tolerance = 1e-6;
     step.cg_iterations = 20000;
     advance(body, &step);
     view = view_of(body);
-    find_tips(body, 8, tips);
+    find_tips(body, 8, gravity < 0 ? -1 : 1, tips);
     for (f = 0; !(fabs(view.fragment_volume[f] - 16 * thick) < 1e-9); f++) {}
     gx_body_destroy(body);
     wl_free(&w);
@@ -384,9 +384,21 @@ START_TEST(slices_hang_as_beams) {
     const double t = thick[_i % 3], low = _i < 3 ? 0.45 : _i < 6 ? 0.07 : 0.83 - t;
     const double beam = 1000 * 1e-3 * t * pow(8, 4) / (8 * 1e6 * t * t * t / 12);
     const double stiffer = beam / 0.1; /* so stiff that it drops by a tenth of a unit, and theory holds */
-    const double with = drop_of(1, low, t, 1e6 * stiffer) * stiffer;
+    const double with = drop_of(1, low, t, 1e6 * stiffer, -1e-3) * stiffer;
     ck_assert_msg(with > least[_i % 3] * beam && with < 1.03 * beam, "%d: %g of %g", _i, with / beam, beam);
-    if (_i == 1) ck_assert_msg(drop_of(0, low, t, 1e6 * stiffer) * stiffer < 0.1 * beam, "it is not stiff without");
+    if (_i == 1)
+        ck_assert_msg(drop_of(0, low, t, 1e6 * stiffer, -1e-3) * stiffer < 0.1 * beam, "it is not stiff without");
+}
+END_TEST
+
+/* Slices that gravity bends by 0.4 of their length, downwards and upwards: as an inextensible rod, nearly, and both
+   ways alike. k: load q l^3 / (E I) */
+START_TEST(slices_bend_both_ways_alike) {
+    static const double low[3] = {0.37, 0.07, 0.73};
+    const double t = 0.1, k = 4, rod = 0.42516 * 8, young = 12 * 1000 * 1e-3 * pow(8, 3) / (k * t * t);
+    const double down = drop_of(1, low[_i], t, young, -1e-3), up = drop_of(1, low[_i], t, young, 1e-3);
+    ck_assert_msg(fabs(down - up) < 0.1 * rod, "%d: %g down, %g up", _i, down / 8, up / 8);
+    ck_assert_msg(fmin(down, up) > 0.87 * rod && fmax(down, up) < 1.01 * rod, "%d: %g, %g", _i, down / rod, up / rod);
 }
 END_TEST
 
@@ -1915,6 +1927,7 @@ int main(void) {
     ADD_SOME(tcase, fields_are_as_defined, 12);
     tcase_add_test(tcase, rigid_motions_are_exact);
     ADD_SOME(tcase, slices_hang_as_beams, 9);
+    ADD_SOME(tcase, slices_bend_both_ways_alike, 3);
     ADD_SOME(tcase, flung_sheets_keep_their_momentum, 4);
     tcase_add_test(tcase, points_move_with_affine_copies);
     tcase_add_test(tcase, planes_stop_sheets);
