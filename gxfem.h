@@ -15772,8 +15772,6 @@ static gx_result gxp_find_layers(gx_blade *blade, const double *before, const do
 #define GXP_CAP 1.25
 /* In the air, places that are seen are at most this share of their distances from the layer apart. */
 #define GXP_AIR 0.5
-/* A front is off the edge by at most this share of the tolerance. */
-#define GXP_THINNED 0.7
 
 typedef struct gxp_sight { /* what a search for the nearest cell of a layer has found */
     uint32_t index;        /* of a near cell, GXP_NONE: none */
@@ -16187,7 +16185,7 @@ static gx_result gxp_thin_run(gx_blade *blade, uint32_t first) {
     needed = blade->needed.data;
     memset(needed, 0, blade->samples.count * sizeof *needed);
     needed[first] = needed[last] = 1;
-    gxp_keep_bends(v, first, last, GXP_THINNED * blade->tolerance, needed);
+    gxp_keep_bends(v, first, last, 0.5 * blade->tolerance, needed);
     gxp_keep_stretches(v, first, last, needed);
     for (i = first; i <= last; i++) {
         if (!needed[i]) continue;
@@ -16500,9 +16498,11 @@ static void gxp_judge_together(const gxp_front_list *samples, const gxp_front_li
    memory. */
 
 /* Of two chords between fronts, squares of whose lengths differ by less than the first as a factor, the one that is
-   less off the sheet is taken where one is off by more than the second as a share of the tolerance. */
+   less off the sheet is taken where one is off by more than the second as a share of the tolerance, none by more than
+   the third: that is noise. */
 #define GXP_CHORD_LONGER  4.0
 #define GXP_CHORD_MATTERS 0.25
+#define GXP_CHORD_NOISE   2.0
 
 /* What the layer's edge does at a move */
 typedef struct gxp_advance {
@@ -16659,12 +16659,13 @@ static int gxp_goes_from(const gx_blade *blade, const gxp_front_list *from, uint
                          const gxp_front_list *to, uint32_t j, uint32_t next_j) {
     const double a = gxp_square_distance(from->data[next_i].rest, to->data[j].rest),
                  b = gxp_square_distance(from->data[i].rest, to->data[next_j].rest);
-    double off_a, off_b;
+    double off_a, off_b, most;
     if (!(a < GXP_CHORD_LONGER * b && b < GXP_CHORD_LONGER * a)) return a <= b;
     off_a = gxp_chord_off(from, next_i, to, j);
     off_b = gxp_chord_off(from, i, to, next_j);
-    if (off_a < 0 || off_b < 0 || fmax(off_a, off_b) <= GXP_CHORD_MATTERS * blade->tolerance) return a <= b;
-    return off_a <= off_b;
+    most = fmax(off_a, off_b);
+    if (off_a < 0 || off_b < 0 || most <= GXP_CHORD_MATTERS * blade->tolerance) return a <= b;
+    return most <= GXP_CHORD_NOISE * blade->tolerance ? off_a <= off_b : a <= b;
 }
 
 /* Appends to blade.strip the triangles between two vertices of a front and two of another one. Vertices that both have
@@ -21507,13 +21508,13 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_CAP
 #undef GXP_SURELY
 #undef GXP_AIR
-#undef GXP_THINNED
 #undef GXP_LEAP
 #undef GXP_SAME_WAY
 #undef GXP_STAYED
 #undef GXP_LEAST_ADVANCE
 #undef GXP_CHORD_LONGER
 #undef GXP_CHORD_MATTERS
+#undef GXP_CHORD_NOISE
 #undef GXP_CHORD_HALVES
 #undef GXP_CHORD_OFF
 #undef GXP_CUT_WIDTH
