@@ -16557,6 +16557,13 @@ static void gxp_judge_together(const gxp_front_list *samples, const gxp_front_li
    triangles between the two. Where the edge goes back through its own cut the front stays. Touches the blade's working
    memory. */
 
+/* Of two chords between fronts, squares of whose lengths differ by less than the first as a factor, the one that is
+   less off the sheet is taken where one is off by more than the second as a share of the tolerance, none by more than
+   the third: that is noise. */
+#define GXP_CHORD_LONGER  4.0
+#define GXP_CHORD_MATTERS 0.25
+#define GXP_CHORD_NOISE   2.0
+
 /* What the layer's edge does at a move */
 typedef struct gxp_advance {
     double most; /* the largest advance, m; of places inside, if there are any */
@@ -16651,17 +16658,85 @@ static uint32_t gxp_shared_gap(const gxp_front_list *front, uint32_t i, const gx
     return front->count - 1;
 }
 
-/* Appends to blade.strip the triangles between two vertices of a front and two of another one: the shorter diagonal
-   comes first. Vertices that both have make no triangle. */
+/* The corner of a front before another one (step -1) or after it (1), the corner itself at an end of the front */
+static uint32_t gxp_corner_beside(const gxp_front_list *front, uint32_t corner, int step) {
+    const gxp_front_vertex *v = front->data;
+    uint32_t i = corner;
+    for (;;) {
+        if (step < 0 ? i == 0 || v[i - 1].gap : i + 1 == front->count || v[i].gap) return corner;
+        i = step < 0 ? i - 1 : i + 1;
+        if (!v[i].soft) return i;
+    }
+}
+
+/* The direction of a front at a corner: of the lines on both sides, that of the shorter one counts more. Returns 0 if
+   it has none. */
+static int gxp_front_tangent(const gxp_front_list *front, uint32_t corner, double tangent[3]) {
+    const gxp_front_vertex *v = front->data, *before = &v[gxp_corner_beside(front, corner, -1)],
+                           *after = &v[gxp_corner_beside(front, corner, 1)];
+    const double length[2] = {sqrt(gxp_square_distance(v[corner].rest, before->rest)),
+                              sqrt(gxp_square_distance(v[corner].rest, after->rest))};
+    int k;
+    for (k = 0; k < 3; k++) {
+        const double a = v[corner].rest[k] - before->rest[k], b = after->rest[k] - v[corner].rest[k];
+        tangent[k] = length[0] > 0 && length[1] > 0 ? a * length[1] / length[0] + b * length[0] / length[1] : a + b;
+    }
+    return gxp_unit(tangent, tangent);
+}
+
+/* The direction in which a front has come to the vertex in the material next to another one: those in the air have come
+   as the map extended. NULL if the whole front is in the air. */
+static const double *gxp_material_direction(const gxp_front_list *front, uint32_t i) {
+    const gxp_front_vertex *v = front->data;
+    uint32_t off;
+    for (off = 0; off < front->count; off++) {
+        if (i >= off && !(v[i - off].distance > 0)) return v[i - off].ahead;
+        if (i + off < front->count && !(v[i + off].distance > 0)) return v[i + off].ahead;
+    }
+    return NULL;
+}
+
+/* How far the chord between corners of two fronts is off the sheet, as far as its normals there tell; negative: they do
+   not. They differ by how the sheet bends along the chord. */
+static double gxp_chord_off(const gxp_front_list *from, uint32_t i, const gxp_front_list *to, uint32_t j) {
+    const double *came = gxp_material_direction(from, i), *comes = gxp_material_direction(to, j);
+    double tangent[2][3], normal[2][3], off = 0;
+    int k;
+    if (came == NULL) came = comes;
+    if (comes == NULL) comes = came;
+    if (came == NULL || !gxp_front_tangent(from, i, tangent[0]) || !gxp_front_tangent(to, j, tangent[1])) return -1;
+    gxp_cross(normal[0], tangent[0], came);
+    gxp_cross(normal[1], tangent[1], comes);
+    if (!gxp_unit(normal[0], normal[0]) || !gxp_unit(normal[1], normal[1])) return -1;
+    if (!(gxp_dot(normal[0], normal[1]) > 0.5)) return -1;
+    for (k = 0; k < 3; k++) off += (to->data[j].rest[k] - from->data[i].rest[k]) * (normal[1][k] - normal[0][k]);
+    return 0.125 * fabs(off);
+}
+
+/* Which chord comes next between two fronts: that to the next corner of `from`? It is the one that is less off the
+   sheet, where that matters and neither is much longer; else the shorter one. */
+static int gxp_goes_from(const gx_blade *blade, const gxp_front_list *from, uint32_t i, uint32_t next_i,
+                         const gxp_front_list *to, uint32_t j, uint32_t next_j) {
+    const double a = gxp_square_distance(from->data[next_i].rest, to->data[j].rest),
+                 b = gxp_square_distance(from->data[i].rest, to->data[next_j].rest);
+    double off_a, off_b, most;
+    if (!(a < GXP_CHORD_LONGER * b && b < GXP_CHORD_LONGER * a)) return a <= b;
+    off_a = gxp_chord_off(from, next_i, to, j);
+    off_b = gxp_chord_off(from, i, to, next_j);
+    most = fmax(off_a, off_b);
+    if (off_a < 0 || off_b < 0 || most <= GXP_CHORD_MATTERS * blade->tolerance) return a <= b;
+    return most <= GXP_CHORD_NOISE * blade->tolerance ? off_a <= off_b : a <= b;
+}
+
+/* Appends to blade.strip the triangles between two vertices of a front and two of another one. Vertices that both have
+   make no triangle. */
 static gx_result gxp_zip_runs(gx_blade *blade, const gxp_front_list *from, uint32_t i, uint32_t i_end,
                               const gxp_front_list *to, uint32_t j, uint32_t j_end) {
     uint32_t k, next_i = gxp_next_corner(from, i), next_j = gxp_next_corner(to, j);
     gx_result result = GX_OK;
     while ((next_i <= i_end || next_j <= j_end) && result == GX_OK) {
         const gxp_front_vertex *corner[3];
-        const int by_from =
-            next_i <= i_end && (next_j > j_end || gxp_square_distance(from->data[next_i].rest, to->data[j].rest) <=
-                                                      gxp_square_distance(from->data[i].rest, to->data[next_j].rest));
+        const int by_from = next_i <= i_end && (next_j > j_end || gxp_goes_from(blade, from, i, next_i, to, j, next_j));
         corner[0] = &from->data[i];
         corner[1] = by_from ? &from->data[next_i] : &to->data[next_j];
         corner[2] = &to->data[j];
@@ -16678,38 +16753,6 @@ static gx_result gxp_zip_runs(gx_blade *blade, const gxp_front_list *from, uint3
         for (k = 0; k < 3 && result == GX_OK; k++) result = gxp_push_vertex(blade->body, &blade->strip, corner[k]);
     }
     return result;
-}
-
-/* Lists in blade.strip the triangles between two fronts. A gap that both have stays open. */
-static gx_result gxp_zip(gx_blade *blade, const gxp_front_list *from, const gxp_front_list *to) {
-    uint32_t i = 0, j = 0, i_end, j_end;
-    gx_result result = GX_OK;
-    blade->strip.count = 0;
-    while (i < from->count && j < to->count && result == GX_OK) {
-        i_end = gxp_shared_gap(from, i, to, j, &j_end);
-        result = gxp_zip_runs(blade, from, i, i_end, to, j, j_end);
-        i = i_end + 1;
-        j = j_end + 1;
-    }
-    return result;
-}
-
-/* The largest distance of the edge's path since the front was cut from the strip, or from the front where that stays */
-static double gxp_bend(const gx_blade *blade) {
-    double most = 0;
-    uint32_t i, t;
-    for (i = 0; i < blade->path.count && blade->strip.count > 0; i++) {
-        const double *x = blade->path.data + 3 * (size_t)i;
-        double best, at[3];
-        gxp_relation r;
-        gxp_near_front(&blade->front, x, &r, at);
-        best = r.distance * r.distance;
-        for (t = 0; t < blade->strip.count; t += 3)
-            best = fmin(best, gxp_onto_triangle(x, blade->strip.data[t].rest, blade->strip.data[t + 1].rest,
-                                                blade->strip.data[t + 2].rest, at));
-        most = fmax(most, best);
-    }
-    return sqrt(most);
 }
 
 static int gxp_has_direction(const gxp_front_vertex *v) { return gxp_dot(v->ahead, v->ahead) > 0; }
@@ -16760,6 +16803,40 @@ static void gxp_set_directions(const gxp_front_list *from, gxp_front_list *to) {
     gxp_spread_directions(to);
 }
 
+/* Lists in blade.strip the triangles between two fronts, and sets the directions of the second one. A gap that both
+   have stays open. */
+static gx_result gxp_zip(gx_blade *blade, const gxp_front_list *from, gxp_front_list *to) {
+    uint32_t i = 0, j = 0, i_end, j_end;
+    gx_result result = GX_OK;
+    if (from->count > 1) gxp_set_directions(from, to);
+    blade->strip.count = 0;
+    while (i < from->count && j < to->count && result == GX_OK) {
+        i_end = gxp_shared_gap(from, i, to, j, &j_end);
+        result = gxp_zip_runs(blade, from, i, i_end, to, j, j_end);
+        i = i_end + 1;
+        j = j_end + 1;
+    }
+    return result;
+}
+
+/* The largest distance of the edge's path since the front was cut from the strip, or from the front where that stays */
+static double gxp_bend(const gx_blade *blade) {
+    double most = 0;
+    uint32_t i, t;
+    for (i = 0; i < blade->path.count && blade->strip.count > 0; i++) {
+        const double *x = blade->path.data + 3 * (size_t)i;
+        double best, at[3];
+        gxp_relation r;
+        gxp_near_front(&blade->front, x, &r, at);
+        best = r.distance * r.distance;
+        for (t = 0; t < blade->strip.count; t += 3)
+            best = fmin(best, gxp_onto_triangle(x, blade->strip.data[t].rest, blade->strip.data[t + 1].rest,
+                                                blade->strip.data[t + 2].rest, at));
+        most = fmax(most, best);
+    }
+    return sqrt(most);
+}
+
 /* Cuts the strip up to a new front, which becomes the layer's. */
 static gx_result gxp_cut_strip(gx_blade *blade, gxp_front_list *to, gx_blade_report *report) {
     gx_body *body = blade->body;
@@ -16775,7 +16852,6 @@ static gx_result gxp_cut_strip(gx_blade *blade, gxp_front_list *to, gx_blade_rep
                 3 * room * sizeof *blade->sheet.data);
         blade->sheet.count = room;
     }
-    gxp_set_directions(&blade->front, to);
     blade->path.count = blade->latest.count = 0;
     return gxp_copy_front(body, &blade->front, to);
 }
@@ -22353,6 +22429,9 @@ GXFEM_API gx_result gx_group_contact_events(gx_group *group, gx_group_contact_ev
 #undef GXP_SAME_WAY
 #undef GXP_STAYED
 #undef GXP_LEAST_ADVANCE
+#undef GXP_CHORD_LONGER
+#undef GXP_CHORD_MATTERS
+#undef GXP_CHORD_NOISE
 #undef GXP_CHORD_HALVES
 #undef GXP_CHORD_OFF
 #undef GXP_CUT_WIDTH
