@@ -14401,8 +14401,7 @@ static void gxp_nearest_on_lines(const double x[6], const double way[6], double 
     at[1] = (ar * ab - aa * br) / det;
 }
 
-/* Does an edge cross another one within the step? pair: receives what they are to each other. Of one piece only what is
-   not near at rest can. */
+/* Does an edge cross one of another piece within the step? pair: receives what they are to each other */
 static int gxp_crosses(const gx_body *body, const gxp_touch_surface *s, double dt, uint32_t one, uint32_t two,
                        gxp_touch_pair *pair) {
     const gxp_touch *t = &body->touch;
@@ -14410,11 +14409,10 @@ static int gxp_crosses(const gx_body *body, const gxp_touch_surface *s, double d
     const gxp_touch_facet *f[2] = {&s->facets[edge[0]->facet[0]], &s->facets[edge[1]->facet[0]]};
     const double size = fmin(f[0]->size, f[1]->size);
     const double *end[2][2]; /* of each edge */
-    double *share[2], way[2][3], x[2][3], d[6] = {0, 0, 0, 0, 0, 0}, apart[3] = {0, 0, 0}, at[2], out[3], side = 0,
-                                          time;
+    double *share[2], way[2][3], x[2][3], d[6] = {0, 0, 0, 0, 0, 0}, at[2], out[3], side = 0, time;
     int i, k, ends = 0;
     uint32_t n;
-    if (!gxp_is_let(t, f[0]->fragment, f[1]->fragment, GXP_NONE)) return 0;
+    if (f[0]->fragment == f[1]->fragment || !gxp_is_let(t, f[0]->fragment, f[1]->fragment, GXP_NONE)) return 0;
     for (i = 0; i < 2; i++) {
         for (n = 0; n < 2; n++) end[i][n] = t->moved + 9 * (size_t)f[i]->vertex[(edge[i]->from + n) % 3];
         for (k = 0; k < 3; k++) way[i][k] = end[i][1][k] - end[i][0][k];
@@ -14461,7 +14459,6 @@ static int gxp_crosses(const gx_body *body, const gxp_touch_surface *s, double d
             const double *rest = s->vertices[f[i]->vertex[corner]].rest;
             share[i][corner] = n == 0 ? 1 - at[i] : at[i];
             for (k = 0; k < 6; k++) d[k] += sign * share[i][corner] * end[i][n][k];
-            for (k = 0; k < 3; k++) apart[k] += sign * share[i][corner] * rest[k];
             for (k = 0; k < 3 && i == 0; k++) pair->rest[k] += share[i][corner] * rest[k];
         }
     }
@@ -14471,41 +14468,46 @@ static int gxp_crosses(const gx_body *body, const gxp_touch_surface *s, double d
     pair->facet = edge[1]->facet[0];
     pair->layers = GXP_TOUCH_WIDTH * GXP_TOUCH_WIDTH * size;
     return ends < 2 && pair->gap > -GXP_TOUCH_CROSS * size &&
-           pair->gap - (pair->approach > 0 ? dt * pair->approach : 0) < GXP_TOUCH_NEAR * size &&
-           (f[0]->fragment != f[1]->fragment || gxp_dot(apart, apart) > size * size);
+           pair->gap - (pair->approach > 0 ? dt * pair->approach : 0) < GXP_TOUCH_NEAR * size;
+}
+
+/* The piece of an edge; of those behind the last one its */
+static uint32_t gxp_edge_fragment(const gxp_touch_surface *s, uint32_t edge) {
+    return s->facets[s->edges[edge < s->edge_count ? edge : s->edge_count - 1].facet[0]].fragment;
 }
 
 /* Finds the edges that cross: touch.crossing. Those that are where they were cross as they did. anew: nothing is known
    of the last search. */
 static gx_result gxp_seek_crossing(gx_body *body, const gxp_touch_surface *s, double dt, int anew) {
     gxp_touch *t = &body->touch;
+    const uint32_t leaf = t->hull_count - 1;
     const float reach = (float)(GXP_TOUCH_CROSS * s->largest);
-    uint32_t stack[128][2], count = 1, kept = 0, i, j;
+    uint32_t stack[128][3], count = s->edge_count > 0, kept = 0, i, j; /* two boxes, with so many edges each */
     gx_result result = GX_OK;
     gxp_fit_edges(t, s, anew);
     for (i = 0; i < t->crossing.count && !anew; i++)
-        if (!t->hulls[t->hull_count - 1 + GXP_FIRST(t->crossing.data[i])].stirred &&
-            !t->hulls[t->hull_count - 1 + GXP_SECOND(t->crossing.data[i])].stirred)
+        if (!t->hulls[leaf + GXP_FIRST(t->crossing.data[i])].stirred &&
+            !t->hulls[leaf + GXP_SECOND(t->crossing.data[i])].stirred)
             t->crossing.data[kept++] = t->crossing.data[i];
     t->crossing.count = kept;
     stack[0][0] = stack[0][1] = 0;
+    stack[0][2] = t->hull_count;
     while (count > 0 && result == GX_OK) {
-        const uint32_t a = stack[--count][0], b = stack[count][1], one = a + 1 - t->hull_count;
-        const uint32_t two = b + 1 - t->hull_count;
-        if ((!t->hulls[a].stirred && !t->hulls[b].stirred) || !gxp_may_cross(&t->hulls[a], &t->hulls[b], reach))
+        const uint32_t a = stack[--count][0], b = stack[count][1], edges = stack[count][2];
+        const uint32_t one = (a + 1) * edges - t->hull_count, two = (b + 1) * edges - t->hull_count;
+        gxp_touch_pair pair;
+        if ((!t->hulls[a].stirred && !t->hulls[b].stirred) || !gxp_may_cross(&t->hulls[a], &t->hulls[b], reach) ||
+            gxp_edge_fragment(s, one) == gxp_edge_fragment(s, two + edges - 1))
             continue;
-        if (a + 1 < t->hull_count) {
-            for (i = 1; i <= 2; i++)
-                for (j = a == b ? i : 1; j <= 2; j++) {
-                    stack[count][0] = 2 * a + i;
-                    stack[count++][1] = 2 * b + j;
-                }
-        } else if (a != b) {
-            gxp_touch_pair pair;
-            if (!gxp_crosses(body, s, dt, one, two, &pair)) continue;
-            result = gxp_push_key(body, &t->crossing, one, two);
-            if (result == GX_OK) result = gxp_push_key(body, &t->crossing, two, one);
-        }
+        for (i = 1; i <= 2 && edges > 1; i++)
+            for (j = a == b ? i : 1; j <= 2; j++) {
+                stack[count][0] = 2 * a + i;
+                stack[count][1] = 2 * b + j;
+                stack[count++][2] = edges / 2;
+            }
+        if (edges > 1 || !gxp_crosses(body, s, dt, one, two, &pair)) continue;
+        result = gxp_push_key(body, &t->crossing, one, two);
+        if (result == GX_OK) result = gxp_push_key(body, &t->crossing, two, one);
     }
     return result == GX_OK ? gxp_sort_keys(body, &t->crossing, 0, t->crossing.count) : result;
 }
