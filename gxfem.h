@@ -60,7 +60,7 @@
  *     what acts on it:           >>attached >>supports >>model
  *     the skin:                  >>corners >>vertices >>faces >>skinning
  *     points and rays:           >>tree >>locate >>nearest >>hits >>rays
- *     a step, with contact:      >>touch >>carrying >>colliders >>meeting >>crowding >>seeking >>pairing
+ *     a step, with contact:      >>touch >>carrying >>colliders >>meeting >>crowding >>seeking >>crossing >>pairing
  *                                >>pressing >>telling >>step
  *     a blade in space:          >>layers >>edges >>relations >>fronts >>glances >>strokes >>ways >>blade
  *                                >>contacts >>carve
@@ -21666,6 +21666,11 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 #undef GXP_TOUCH_BEHIND
 #undef GXP_TOUCH_ALIKE
 #undef GXP_TOUCH_COPIES
+#undef GXP_TOUCH_SHARP
+#undef GXP_TOUCH_SKEW
+#undef GXP_TOUCH_ARC
+#undef GXP_TOUCH_CROSS
+#undef GXP_TOUCH_WIDTH
 #undef GXP_TREE_LEAVES
 #undef GXP_TREE_LEAF
 #undef GXP_TREE_MARGIN
