@@ -60,7 +60,7 @@
  *     what acts on it:           >>attached >>supports >>model
  *     the skin:                  >>corners >>vertices >>faces >>skinning
  *     points and rays:           >>tree >>locate >>nearest >>hits >>rays
- *     a step, with contact:      >>touch >>carrying >>colliders >>meeting >>crowding >>seeking >>pairing
+ *     a step, with contact:      >>touch >>carrying >>colliders >>meeting >>crowding >>seeking >>crossing >>pairing
  *                                >>pressing >>telling >>step
  *     a blade in space:          >>layers >>edges >>relations >>fronts >>glances >>strokes >>ways >>blade
  *                                >>contacts >>carve
@@ -1619,8 +1619,12 @@ typedef struct gxp_touch_facet {
     uint32_t vertex[3], element, fragment;
 } gxp_touch_facet;
 
+typedef struct gxp_touch_edge { /* a sharp one, of two facets */
+    uint32_t facet[2], from;    /* it goes from that corner of the first facet to the next one */
+} gxp_touch_edge;
+
 /* What a sample pressed with at the end of the last step. A sample is a vertex, by its name, or, from vertex_count on,
-   a facet */
+   a place on a facet */
 typedef struct gxp_touch_state {
     uint32_t sample, other; /* other: a collider's id; GXP_NONE: the body itself */
     double pressed;         /* m: depth */
@@ -1631,8 +1635,9 @@ typedef struct gxp_touch_state {
 typedef struct gxp_touch_surface { /* facets by fragment, then as they lie in space at rest */
     gxp_touch_vertex *vertices;
     gxp_touch_facet *facets;
+    gxp_touch_edge *edges;   /* by their first facet, ascending */
     gxp_touch_state *states; /* by sample, ascending */
-    uint32_t vertex_count, facet_count, vertex_capacity, facet_capacity;
+    uint32_t vertex_count, facet_count, edge_count, vertex_capacity, facet_capacity, edge_capacity;
     uint32_t state_count, state_capacity;
     double largest;    /* m: size of the vertices' elements */
     gxp_words guesses; /* of each vertex: the facet that it met when it was sought last, or GXP_NONE */
@@ -1651,9 +1656,10 @@ typedef struct gxp_touch_deep { /* a collider whose middle is behind the skin, o
 typedef struct gxp_touch_pair {  /* of a step */
     uint32_t sample;             /* see gxp_touch_state */
     uint32_t parts;              /* of a facet's edges */
-    uint32_t facet;              /* that a vertex touches; GXP_NONE: it is a collider, or nothing any more */
+    uint32_t facet;              /* that it touches; GXP_NONE: it is a collider, or nothing any more */
     uint32_t collider, other;    /* place among the step's colliders, id; GXP_NONE: none */
-    double share[3];             /* of the corners of that facet; of a sample that is a facet, those of its own */
+    double share[3];             /* of the corners of that facet */
+    double own[3];               /* of a sample on a facet: likewise, of its own */
     double normal[3];            /* of the other side, in space, of length 1 */
     double gap, approach, score; /* m; m/s; m2: the smallest is taken */
     double gap_before;           /* m: after the step, what gap was before */
@@ -1742,6 +1748,8 @@ typedef struct gxp_touch {
     gxp_touch_crowd *crowds; /* those that surface.crowds has */
     gxp_touch_box *boxes;    /* a complete binary tree over the facets, GXP_TOUCH_LEAF in each of its leaves */
     gxp_touch_leaf *leaves;  /* of those that have facets */
+    gxp_touch_box *hulls;    /* a complete binary tree over the sharp edges */
+    gxp_keys crossing;       /* edges that cross: two of them, both ways */
     gxp_words sides;         /* pairs x gxp_pair_span: vectors of their points */
     double *weights;         /* likewise */
     double *slips, *forces;  /* all pairs of the step x 3 */
@@ -1756,6 +1764,7 @@ typedef struct gxp_touch {
     float *passed;           /* 12 x near.count, rounded up: boxes of those leaves, and where samples meet them */
     gxp_words crowd, near;   /* boxes that may hold what many samples meet; leaves that do what some of them meet */
     uint32_t leaf_count;     /* a power of two */
+    uint32_t hull_count;     /* likewise: of the edges' tree */
     uint32_t sought;         /* the last search was for surfaces[sought - 1]; 0: for none of these, or it failed */
     double sought_dt;        /* s: that search's */
     gxp_words stirred;       /* of each vertex since: GXP_TOUCH_MOVED, _TURNED */
@@ -1764,7 +1773,7 @@ typedef struct gxp_touch {
     uint32_t event_capacity;
     uint32_t found, kept; /* pairs of contact: of this step; of the last one that succeeded */
     uint32_t passed_capacity, pair_capacity, moved_capacity, facing_capacity, place_capacity, crowd_capacity,
-        box_capacity, leaf_capacity, gap_capacity, weight_capacity, slip_capacity, force_capacity;
+        box_capacity, leaf_capacity, hull_capacity, gap_capacity, weight_capacity, slip_capacity, force_capacity;
 } gxp_touch;
 #define GXP_TOUCH_COPIES 16u /* copies of a pair at most: those of a vertex and of a facet's corners */
 
@@ -2077,6 +2086,8 @@ static const gxp_column gxp_lists[] = {
     GXP_LIST(touch.surfaces[0].facets, touch.surfaces[0].facet_capacity, sizeof(gxp_touch_facet)),
     GXP_LIST(touch.surfaces[1].vertices, touch.surfaces[1].vertex_capacity, sizeof(gxp_touch_vertex)),
     GXP_LIST(touch.surfaces[1].facets, touch.surfaces[1].facet_capacity, sizeof(gxp_touch_facet)),
+    GXP_LIST(touch.surfaces[0].edges, touch.surfaces[0].edge_capacity, sizeof(gxp_touch_edge)),
+    GXP_LIST(touch.surfaces[1].edges, touch.surfaces[1].edge_capacity, sizeof(gxp_touch_edge)),
     GXP_LIST(touch.surfaces[0].states, touch.surfaces[0].state_capacity, sizeof(gxp_touch_state)),
     GXP_LIST(touch.surfaces[1].states, touch.surfaces[1].state_capacity, sizeof(gxp_touch_state)),
     GXP_WORDS(touch.surfaces[0].guesses), GXP_WORDS(touch.surfaces[1].guesses),
@@ -2097,6 +2108,7 @@ static const gxp_column gxp_lists[] = {
     GXP_LIST(touch.events, touch.event_capacity, sizeof(gxp_touch_event)), GXP_WORDS(touch.touching),
     GXP_LIST(touch.boxes, touch.box_capacity, sizeof(gxp_touch_box)), GXP_WORDS(touch.sides),
     GXP_LIST(touch.leaves, touch.leaf_capacity, sizeof(gxp_touch_leaf)),
+    GXP_LIST(touch.hulls, touch.hull_capacity, sizeof(gxp_touch_box)), GXP_KEYS(touch.crossing),
     GXP_LIST(touch.gaps, touch.gap_capacity, sizeof(float)),
     GXP_LIST(touch.weights, touch.weight_capacity, sizeof(double)),
     GXP_LIST(touch.slips, touch.slip_capacity, 3 * sizeof(double)),
@@ -12240,7 +12252,9 @@ enum { GXP_TOUCH_SIDES = 16 };
 /* Samples that are sought together, at most: those that leave out boxes together first, then those that list leaves
    together. With half or twice of either a step takes up to 4 % longer. A cosine: how alike they face at rest */
 enum { GXP_TOUCH_MANY = 128, GXP_TOUCH_FEW = 32 };
-#define GXP_TOUCH_ALIKE  0.7
+#define GXP_TOUCH_ALIKE 0.7
+/* A cosine: facets whose normals have a lesser one meet in a sharp edge */
+#define GXP_TOUCH_SHARP  0.76
 #define GXP_TOUCH_BEYOND 1e30f                              /* m: further than anything */
 enum { GXP_TOUCH_INSIDE, GXP_TOUCH_RIM, GXP_TOUCH_CORNER }; /* of a vertex: where it is on an even part of a surface */
 
@@ -12473,6 +12487,64 @@ static int gxp_is_same_material(const gxp_touch_surface *s, const gxp_touch_vert
     return 1;
 }
 
+/* Is an edge, which two sides of facets have, sharp? Facets that meet at the same points may be of two pieces. */
+static int gxp_is_sharp(const gx_body *body, const gxp_touch_surface *s, uint32_t one, uint32_t two) {
+    static const double whole[3] = {1, 0, 0};
+    const gxp_touch_facet *f[2];
+    double n[2][3], across[3], along[3];
+    uint32_t end[2][2];
+    int i, k;
+    for (i = 0; i < 2; i++) {
+        const uint32_t side = i == 0 ? one : two;
+        f[i] = &s->facets[side / 3];
+        end[i][i] = f[i]->vertex[side % 3];
+        end[i][1 - i] = f[i]->vertex[(side + 1) % 3];
+        gxp_facet_normal(s, f[i], n[i]);
+        if (!gxp_unit(n[i], n[i])) return 0;
+    }
+    if (!(gxp_dot(n[0], n[1]) < GXP_TOUCH_SHARP)) return 0;
+    for (i = 0; i < 2; i++) {
+        const uint32_t corner[3] = {end[1][i], end[1][i], end[1][i]};
+        if (body->skin.point[end[0][i]] != body->skin.point[end[1][i]] ||
+            !gxp_is_same_material(s, &s->vertices[end[0][i]], corner, whole))
+            return 0;
+    }
+    for (k = 0; k < 3; k++) along[k] = s->vertices[end[0][1]].rest[k] - s->vertices[end[0][0]].rest[k];
+    gxp_cross(across, n[0], n[1]);
+    return gxp_dot(across, along) > 0;
+}
+
+/* Lists the sharp edges. Sides of facets that may have one are grouped by their ends' points. */
+static gx_result gxp_list_sharp(gx_body *body, gxp_touch_surface *s) {
+    const uint32_t *roles = body->touch.roles.data;
+    gxp_keys *sides = &body->touch.members, *found = &body->touch.edges;
+    gx_result result;
+    uint32_t i, j, m;
+    sides->count = found->count = s->edge_count = 0;
+    result = gxp_keys_room(body, sides, 6 * (size_t)s->facet_count);
+    for (i = 0; i < 3 * s->facet_count && result == GX_OK; i++) {
+        const uint32_t *v = s->facets[i / 3].vertex, a = v[i % 3], b = v[(i + 1) % 3];
+        const uint32_t p = body->skin.point[a], q = body->skin.point[b], ends[2] = {p < q ? p : q, p < q ? q : p};
+        if (roles[a] != GXP_TOUCH_INSIDE && roles[b] != GXP_TOUCH_INSIDE)
+            sides->data[sides->count++] = gxp_hash_words(0, ends, 2) << 32 | i;
+    }
+    if (result == GX_OK) result = gxp_sort_keys(body, sides, 0, sides->count);
+    for (i = 0; i < sides->count && result == GX_OK; i++)
+        for (j = i + 1; j < sides->count && GXP_FIRST(sides->data[j]) == GXP_FIRST(sides->data[i]); j++)
+            if (gxp_is_sharp(body, s, GXP_SECOND(sides->data[i]), GXP_SECOND(sides->data[j])))
+                result = gxp_push_key(body, found, GXP_SECOND(sides->data[i]), GXP_SECOND(sides->data[j]));
+    if (result == GX_OK) result = gxp_sort_keys(body, found, 0, found->count);
+    if (result == GX_OK)
+        result = gxp_reserve(&body->config.allocator, &s->edges, sizeof *s->edges, 0, &s->edge_capacity, found->count);
+    for (m = 0; m < found->count && result == GX_OK; m++) {
+        gxp_touch_edge *edge = &s->edges[s->edge_count++];
+        edge->facet[0] = GXP_FIRST(found->data[m]) / 3;
+        edge->facet[1] = GXP_SECOND(found->data[m]) / 3;
+        edge->from = GXP_FIRST(found->data[m]) % 3;
+    }
+    return result;
+}
+
 /* Lists vertices by the point of the complex at which they are: touch.members. */
 static gx_result gxp_list_points(gx_body *body, const gxp_touch_surface *s) {
     gxp_keys *members = &body->touch.members;
@@ -12621,6 +12693,7 @@ static gx_result gxp_make_surface(gx_body *body, gxp_touch_surface *to) {
     if (result == GX_OK) result = gxp_mark_fragments(body);
     if (result == GX_OK) result = gxp_copy_samples(body, to);
     if (result == GX_OK) result = gxp_choose_samples(body, to);
+    if (result == GX_OK) result = gxp_list_sharp(body, to);
     if (result == GX_OK) result = gxp_add_tips(body, to);
     if (result == GX_OK) result = gxp_renumber(body, to);
     if (result == GX_OK) result = gxp_list_chosen(body, to);
@@ -14290,6 +14363,199 @@ static gx_result gxp_seek_facets(gx_body *body, const gxp_touch_surface *s, doub
     return result;
 }
 
+/* >>crossing: sharp edges that cross ------------------------------------------------------------------------------- */
+/* In: the surface, where its material is and how fast. Out: sharp edges that cross others within a step. Touches what a
+   step with contact works with. */
+
+/* Where two edges cross, neither piece has a vertex near, and none of its facets faces what it enters. Each edge is a
+   sample there, against the other one: along the normal of both, which lies between the normals of the facets at either
+   one. Edges that are nearly parallel are left to their vertices. */
+
+/* A sine: edges at a lesser angle are parallel. How far beyond the normals of its facets one of an edge may be. In
+   sizes of an element: how deep edges are in each other at most; the square root of the share of the surface that one
+   has */
+#define GXP_TOUCH_SKEW  0.1
+#define GXP_TOUCH_ARC   0.05
+#define GXP_TOUCH_CROSS 0.2
+#define GXP_TOUCH_WIDTH 0.3
+
+/* Fits the tree to the edges. anew: none of it is; else those boxes in which nothing is stirred stay. */
+static void gxp_fit_edges(gxp_touch *t, const gxp_touch_surface *s, int anew) {
+    uint32_t i, j;
+    int n;
+    for (i = 2 * t->hull_count - 1; i-- > 0;) {
+        const uint32_t at = i + 1 - t->hull_count;
+        const int inner = i + 1 < t->hull_count, empty = !inner && at >= s->edge_count;
+        gxp_touch_box *box = &t->hulls[i];
+        box->stirred = anew || (inner && (t->hulls[2 * i + 1].stirred || t->hulls[2 * i + 2].stirred));
+        for (n = 0; n < 2 && !inner && !empty; n++)
+            box->stirred |= gxp_facet_moves(t, &s->facets[s->edges[at].facet[n]]);
+        if (!box->stirred) continue;
+        gxp_empty_box(box);
+        for (j = 2 * i + 1; j <= 2 * i + 2 && inner; j++) gxp_add_box(&t->hulls[j], box);
+        for (n = 0; n < 2 && !inner && !empty; n++) {
+            const gxp_touch_edge *edge = &s->edges[at];
+            const gxp_touch_place *x = &t->places[s->facets[edge->facet[0]].vertex[(edge->from + (uint32_t)n) % 3]];
+            const float *normal = t->facing + 4 * (size_t)edge->facet[n];
+            gxp_add_to_span(x->from, x->from, &box->from);
+            gxp_add_to_span(x->to, x->to, &box->to);
+            gxp_add_to_span(normal, normal, &box->normals);
+        }
+        if (!inner && !empty) gxp_widen_box(box);
+    }
+}
+
+/* May edges of two boxes cross within the step? The normal of both is between the normals of either's facets, as that
+   one sees it. */
+static int gxp_may_cross(const gxp_touch_box *a, const gxp_touch_box *b, float reach) {
+    const float arc = (float)(2 * GXP_TOUCH_ARC);
+    int32_t far[4];
+    uint32_t j;
+    GXP_EACH_LANE(j) {
+        const gxp_lane left =
+            gxp_lane_least(GXP_LANE(a->from.low) - GXP_LANE(b->from.high), GXP_LANE(a->to.low) - GXP_LANE(b->to.high));
+        const gxp_lane right =
+            gxp_lane_least(GXP_LANE(b->from.low) - GXP_LANE(a->from.high), GXP_LANE(b->to.low) - GXP_LANE(a->to.high));
+        const gxp_lane up = gxp_lane_least(GXP_LANE(a->normals.low), GXP_LANE(b->normals.low));
+        const gxp_lane down = gxp_lane_most(GXP_LANE(a->normals.high), GXP_LANE(b->normals.high));
+        GXP_FLAGS(far) = GXP_ABOVE(left, reach) | GXP_ABOVE(right, reach) | GXP_ABOVE(up, arc) | GXP_ABOVE(-down, arc);
+    }
+    return (far[0] | far[1] | far[2]) == 0;
+}
+
+/* Is a direction across an edge between the normals of the edge's facets? */
+static int gxp_is_between(const gxp_touch *t, const gxp_touch_edge *edge, const double n[3]) {
+    double one[3], two[3], turn[3], part[3], square;
+    gxp_facing(t, edge->facet[0], one);
+    gxp_facing(t, edge->facet[1], two);
+    gxp_cross(turn, one, two);
+    square = gxp_dot(turn, turn);
+    gxp_cross(part, n, two);
+    if (!(square > 0) || gxp_dot(part, turn) < -GXP_TOUCH_ARC * square) return 0;
+    gxp_cross(part, one, n);
+    return gxp_dot(part, turn) >= -GXP_TOUCH_ARC * square;
+}
+
+/* Where two lines are nearest: at x + at[0] way, and so on of the second three numbers of either */
+static void gxp_nearest_on_lines(const double x[6], const double way[6], double at[2]) {
+    const double r[3] = {x[3] - x[0], x[4] - x[1], x[5] - x[2]};
+    const double aa = gxp_dot(way, way), ab = gxp_dot(way, way + 3), bb = gxp_dot(way + 3, way + 3);
+    const double ar = gxp_dot(way, r), br = gxp_dot(way + 3, r), det = aa * bb - ab * ab;
+    at[0] = (ar * bb - ab * br) / det;
+    at[1] = (ar * ab - aa * br) / det;
+}
+
+/* Does an edge cross one of another piece within the step? pair: receives what they are to each other */
+static int gxp_crosses(const gx_body *body, const gxp_touch_surface *s, double dt, uint32_t one, uint32_t two,
+                       gxp_touch_pair *pair) {
+    const gxp_touch *t = &body->touch;
+    const gxp_touch_edge *edge[2] = {&s->edges[one], &s->edges[two]};
+    const gxp_touch_facet *f[2] = {&s->facets[edge[0]->facet[0]], &s->facets[edge[1]->facet[0]]};
+    const double size = fmin(f[0]->size, f[1]->size);
+    const double *end[2][2]; /* of each edge */
+    double *share[2], way[2][3], x[2][3], d[6] = {0, 0, 0, 0, 0, 0}, at[2], out[3], side = 0, time;
+    int i, k, ends = 0;
+    uint32_t n;
+    if (f[0]->fragment == f[1]->fragment || !gxp_is_let(t, f[0]->fragment, f[1]->fragment, GXP_NONE)) return 0;
+    for (i = 0; i < 2; i++) {
+        for (n = 0; n < 2; n++) end[i][n] = t->moved + 9 * (size_t)f[i]->vertex[(edge[i]->from + n) % 3];
+        for (k = 0; k < 3; k++) way[i][k] = end[i][1][k] - end[i][0][k];
+    }
+    gxp_cross(pair->normal, way[0], way[1]);
+    if (!(gxp_dot(pair->normal, pair->normal) >
+          GXP_TOUCH_SKEW * GXP_TOUCH_SKEW * gxp_dot(way[0], way[0]) * gxp_dot(way[1], way[1])) ||
+        !gxp_unit(pair->normal, pair->normal))
+        return 0;
+    for (i = 0; i < 2; i++) {
+        gxp_facing(t, edge[1]->facet[i], out);
+        side += gxp_dot(out, pair->normal);
+    }
+    for (k = 0; k < 3; k++) {
+        if (side < 0) pair->normal[k] = -pair->normal[k];
+        out[k] = -pair->normal[k];
+    }
+    if (!gxp_is_between(t, edge[1], pair->normal) || !gxp_is_between(t, edge[0], out)) return 0;
+    for (k = 0; k < 3; k++) {
+        d[k] = end[0][0][k] - end[1][0][k];
+        for (n = 0; n < 2; n++) d[3 + k] += 0.5 * (end[0][n][3 + k] - end[1][n][3 + k]);
+    }
+    pair->gap = gxp_dot(d, pair->normal);
+    pair->approach = -gxp_dot(d + 3, pair->normal);
+    time = pair->gap > 0 && pair->approach > 0 ? fmin(dt, pair->gap / pair->approach) : 0;
+    for (i = 0; i < 2; i++)
+        for (k = 0; k < 3; k++) {
+            x[i][k] = end[i][0][k] + time * end[i][0][3 + k];
+            way[i][k] = end[i][1][k] + time * end[i][1][3 + k] - x[i][k];
+        }
+    gxp_nearest_on_lines(x[0], way[0], at);
+    share[0] = pair->own;
+    share[1] = pair->share;
+    memset(pair->rest, 0, sizeof pair->rest);
+    memset(d, 0, sizeof d);
+    for (i = 0; i < 2; i++) {
+        const double rim = GXP_TOUCH_HELD * size / sqrt(gxp_dot(way[i], way[i])), sign = i == 0 ? 1 : -1;
+        if (!(at[i] >= -rim) || !(at[i] <= 1 + rim)) return 0;
+        ends += at[i] < rim || at[i] > 1 - rim;
+        at[i] = fmin(1, fmax(0, at[i]));
+        memset(share[i], 0, 3 * sizeof *share[i]);
+        for (n = 0; n < 2; n++) {
+            const uint32_t corner = (edge[i]->from + n) % 3;
+            const double *rest = s->vertices[f[i]->vertex[corner]].rest;
+            share[i][corner] = n == 0 ? 1 - at[i] : at[i];
+            for (k = 0; k < 6; k++) d[k] += sign * share[i][corner] * end[i][n][k];
+            for (k = 0; k < 3 && i == 0; k++) pair->rest[k] += share[i][corner] * rest[k];
+        }
+    }
+    pair->gap = gxp_dot(d, pair->normal);
+    pair->approach = -gxp_dot(d + 3, pair->normal);
+    pair->sample = s->vertex_count + edge[0]->facet[0];
+    pair->facet = edge[1]->facet[0];
+    pair->layers = GXP_TOUCH_WIDTH * GXP_TOUCH_WIDTH * size;
+    return ends < 2 && pair->gap > -GXP_TOUCH_CROSS * size &&
+           pair->gap - (pair->approach > 0 ? dt * pair->approach : 0) < GXP_TOUCH_NEAR * size;
+}
+
+/* The piece of an edge; of those behind the last one its */
+static uint32_t gxp_edge_fragment(const gxp_touch_surface *s, uint32_t edge) {
+    return s->facets[s->edges[edge < s->edge_count ? edge : s->edge_count - 1].facet[0]].fragment;
+}
+
+/* Finds the edges that cross: touch.crossing. Those that are where they were cross as they did. anew: nothing is known
+   of the last search. */
+static gx_result gxp_seek_crossing(gx_body *body, const gxp_touch_surface *s, double dt, int anew) {
+    gxp_touch *t = &body->touch;
+    const uint32_t leaf = t->hull_count - 1;
+    const float reach = (float)(GXP_TOUCH_CROSS * s->largest);
+    uint32_t stack[128][3], count = s->edge_count > 0, kept = 0, i, j; /* two boxes, with so many edges each */
+    gx_result result = GX_OK;
+    gxp_fit_edges(t, s, anew);
+    for (i = 0; i < t->crossing.count && !anew; i++)
+        if (!t->hulls[leaf + GXP_FIRST(t->crossing.data[i])].stirred &&
+            !t->hulls[leaf + GXP_SECOND(t->crossing.data[i])].stirred)
+            t->crossing.data[kept++] = t->crossing.data[i];
+    t->crossing.count = kept;
+    stack[0][0] = stack[0][1] = 0;
+    stack[0][2] = t->hull_count;
+    while (count > 0 && result == GX_OK) {
+        const uint32_t a = stack[--count][0], b = stack[count][1], edges = stack[count][2];
+        const uint32_t one = (a + 1) * edges - t->hull_count, two = (b + 1) * edges - t->hull_count;
+        gxp_touch_pair pair;
+        if ((!t->hulls[a].stirred && !t->hulls[b].stirred) || !gxp_may_cross(&t->hulls[a], &t->hulls[b], reach) ||
+            gxp_edge_fragment(s, one) == gxp_edge_fragment(s, two + edges - 1))
+            continue;
+        for (i = 1; i <= 2 && edges > 1; i++)
+            for (j = a == b ? i : 1; j <= 2; j++) {
+                stack[count][0] = 2 * a + i;
+                stack[count][1] = 2 * b + j;
+                stack[count++][2] = edges / 2;
+            }
+        if (edges > 1 || !gxp_crosses(body, s, dt, one, two, &pair)) continue;
+        result = gxp_push_key(body, &t->crossing, one, two);
+        if (result == GX_OK) result = gxp_push_key(body, &t->crossing, two, one);
+    }
+    return result == GX_OK ? gxp_sort_keys(body, &t->crossing, 0, t->crossing.count) : result;
+}
+
 /* >>pairing: pairs with what samples meet -------------------------------------------------------------------------- */
 /* In: the facets that samples meet, samples beside colliders, states. Out: the pairs of a step, each with what its
    sample pressed with before. Touches what a step with contact works with. */
@@ -14366,14 +14632,14 @@ static gx_result gxp_seek_on_facet(gx_body *body, const gxp_touch_surface *s, do
             const int rims = (i == 0) + (j == 0) + (i + j == parts);
             double x[6] = {0, 0, 0, 0, 0, 0};
             int n, wild = 0;
-            pair->share[0] = (double)(parts - i - j) / parts;
-            pair->share[1] = (double)i / parts;
-            pair->share[2] = (double)j / parts;
+            pair->own[0] = (double)(parts - i - j) / parts;
+            pair->own[1] = (double)i / parts;
+            pair->own[2] = (double)j / parts;
             pair->layers = layers * (rims == 0 ? 6 : rims == 1 ? 3 : 1) / (3.0 * parts * parts);
             pair->rest[0] = pair->rest[1] = pair->rest[2] = 0;
             for (n = 0; n < 3; n++) {
-                for (m = 0; m < 6; m++) x[m] += pair->share[n] * body->touch.moved[9 * (size_t)f->vertex[n] + m];
-                for (m = 0; m < 3; m++) pair->rest[m] += pair->share[n] * s->vertices[f->vertex[n]].rest[m];
+                for (m = 0; m < 6; m++) x[m] += pair->own[n] * body->touch.moved[9 * (size_t)f->vertex[n] + m];
+                for (m = 0; m < 3; m++) pair->rest[m] += pair->own[n] * s->vertices[f->vertex[n]].rest[m];
             }
             if (gxp_meets_any(body, s, x, outward, dt, pair, &wild)) result = gxp_list_pair(body, s, pair, failure);
             if (wild) return gxp_fail(failure, GX_ERROR_NOT_FINITE, "colliders.distance", pair->collider);
@@ -14394,7 +14660,7 @@ static gx_result gxp_wake_left(gx_body *body, const gxp_touch_surface *s, uint32
         if (s->states[i].other == GXP_NONE || !gxp_has_changed(t, s->states[i].other)) continue;
         for (j = first; j < t->found && t->pairs[j].other != s->states[i].other;) j++;
         if (j < t->found) continue;
-        lost.share[0] = lost.normal[0] = 1;
+        lost.own[0] = lost.normal[0] = 1;
         lost.other = s->states[i].other; /* once */
         result = gxp_list_pair(body, s, &lost, failure);
     }
@@ -14434,7 +14700,7 @@ static void gxp_mark_held(gxp_touch *t, gxp_touch_surface *s) {
         v->held = v->held ? WAS : 0;
     }
     for (i = 0; i < s->state_count; i++)
-        if (s->states[i].other == GXP_NONE && s->states[i].pressed > 0)
+        if (s->states[i].other == GXP_NONE && s->states[i].pressed > 0 && s->states[i].sample < s->vertex_count)
             s->vertices[s->places.data[s->states[i].sample]].held |= 1;
     for (i = 0; i < s->samples.count; i++) {
         gxp_touch_vertex *v = &s->vertices[s->samples.data[i]];
@@ -14444,24 +14710,36 @@ static void gxp_mark_held(gxp_touch *t, gxp_touch_surface *s) {
     }
 }
 
+/* Lists the pair of an edge with another one that it crosses. */
+static gx_result gxp_list_crossing(gx_body *body, const gxp_touch_surface *s, double dt, uint64_t two,
+                                   gx_failure *failure) {
+    gxp_touch_pair pair = gxp_no_pair(GXP_NONE);
+    return gxp_crosses(body, s, dt, GXP_FIRST(two), GXP_SECOND(two), &pair) ? gxp_list_pair(body, s, &pair, failure)
+                                                                            : GX_OK;
+}
+
 /* Lists the pairs of all samples. */
-static gx_result gxp_seek_pairs(gx_body *body, const gxp_touch_surface *s, double dt, gx_failure *failure) {
+static gx_result gxp_seek_pairs(gx_body *body, const gxp_touch_surface *s, double dt, int anew, gx_failure *failure) {
     gxp_touch *t = &body->touch;
     gx_result result = gxp_list_all_beside(body, s, dt, failure);
-    uint32_t i, next = 0, at = 0;
+    uint32_t i, next = 0, at = 0, cross = 0;
     t->found = 0;
     if (result == GX_OK) result = gxp_end(failure, gxp_seek_facets(body, s, dt));
+    if (result == GX_OK) result = gxp_end(failure, gxp_seek_crossing(body, s, dt, anew));
     if (result == GX_OK && t->filter == NULL) t->sought = s == &t->surfaces[0] ? 1 : 2;
     t->sought_dt = dt;
     for (i = 0; i < s->vertex_count + s->facet_count && result == GX_OK && s->facet_count > 0; i++) {
         const uint32_t sample = gxp_named_sample(s, i);
-        if (i >= s->vertex_count && next == t->order.count && at == s->state_count) break;
+        if (i >= s->vertex_count && next == t->order.count && at == s->state_count && cross == t->crossing.count) break;
         if (i < s->vertex_count && s->guesses.data[sample] != GXP_NONE) {
             gxp_touch_pair pair = gxp_no_pair(sample);
             pair.facet = s->guesses.data[sample];
             (void)gxp_meets(body, s, dt, &pair); /* as it was found */
             result = gxp_list_pair(body, s, &pair, failure);
         }
+        while (cross < t->crossing.count && result == GX_OK &&
+               i == s->vertex_count + s->edges[GXP_FIRST(t->crossing.data[cross])].facet[0])
+            result = gxp_list_crossing(body, s, dt, t->crossing.data[cross++], failure);
         while (at < s->state_count && s->states[at].sample < i) at++;
         if (result == GX_OK && ((next < t->order.count && GXP_FIRST(t->order.data[next]) == i) ||
                                 (at < s->state_count && s->states[at].sample == i)))
@@ -14487,6 +14765,9 @@ static gx_result gxp_surface_room(gx_body *body, const gxp_touch_surface *s) {
     if (result == GX_OK) result = gxp_reserve(a, &t->crowds, sizeof *t->crowds, 0, &t->crowd_capacity, s->crowds.count);
     if (result == GX_OK)
         result = gxp_reserve(a, &t->boxes, sizeof *t->boxes, 0, &t->box_capacity, 2 * (size_t)t->leaf_count);
+    for (t->hull_count = 1; t->hull_count < s->edge_count;) t->hull_count *= 2;
+    if (result == GX_OK)
+        result = gxp_reserve(a, &t->hulls, sizeof *t->hulls, 0, &t->hull_capacity, 2 * (size_t)t->hull_count);
     return result == GX_OK ? gxp_reserve(a, &t->leaves, sizeof *t->leaves, 0, &t->leaf_capacity,
                                          ((size_t)s->facet_count + GXP_TOUCH_LEAF - 1) / GXP_TOUCH_LEAF)
                            : result;
@@ -14545,8 +14826,8 @@ static int gxp_meeting_point(const gx_body *body, const gxp_touch_surface *s, co
         gxp_add_place(body, &s->vertices[pair->sample], 1, point, copies, weights);
     else
         for (i = 0; i < 3; i++)
-            if (pair->share[i] > 0)
-                gxp_add_place(body, &s->vertices[s->facets[pair->sample - s->vertex_count].vertex[i]], pair->share[i],
+            if (pair->own[i] > 0)
+                gxp_add_place(body, &s->vertices[s->facets[pair->sample - s->vertex_count].vertex[i]], pair->own[i],
                               point, copies, weights);
     for (i = 0; i < 3 && pair->facet != GXP_NONE; i++)
         if (pair->share[i] > 0)
@@ -14583,7 +14864,8 @@ static void gxp_set_pair(gx_body *body, const gxp_touch_surface *s, uint32_t i, 
     to->sticking_speed = t->desc.sticking_speed;
     if (pair->facet != GXP_NONE) { /* the other side has a sample of its own somewhere near: each has half */
         const gxp_touch_vertex *w = &s->vertices[s->facets[pair->facet].vertex[0]];
-        to->stiffness = 0.5 * t->desc.stiffness * fmin(v->young, w->young) * v->layers;
+        to->stiffness = 0.5 * t->desc.stiffness * fmin(v->young, w->young) *
+                        (pair->sample < s->vertex_count ? v->layers : pair->layers);
         to->friction = 0.5 * (gxp_friction(t, v) + gxp_friction(t, w));
     } else {
         to->flags = GXS_PAIR_OUTSIDE;
@@ -14661,7 +14943,7 @@ static gx_result gxp_attach_contact(gx_body *body, gxs_step_desc *step, gxp_touc
     gxp_turn_surface(body, surface);
     gxp_fit_facets(body, surface, anew);
     gxp_mark_held(&body->touch, surface);
-    result = gxp_seek_pairs(body, surface, dt, failure);
+    result = gxp_seek_pairs(body, surface, dt, anew, failure);
     return result == GX_OK ? gxp_end(failure, gxp_join_pairs(body, surface, dt, step)) : result;
 }
 
@@ -14834,7 +15116,7 @@ static void gxp_place_sample(const gx_body *body, const gxp_touch_surface *s, co
             &s->vertices[facet ? s->facets[pair->sample - s->vertex_count].vertex[i] : pair->sample];
         double own[3];
         gxp_map_point(body, v->rest, v->copies, v->weights, 4, own);
-        for (k = 0; k < 3; k++) x[k] += (facet ? pair->share[i] : 1) * own[k];
+        for (k = 0; k < 3; k++) x[k] += (facet ? pair->own[i] : 1) * own[k];
     }
 }
 
@@ -21712,6 +21994,8 @@ static gx_result gxp_join_surface(gx_body *all, const gxp_member *m, uint32_t me
         gxp_reserve(a, &s->vertices, sizeof *s->vertices, s->vertex_count, &s->vertex_capacity, own->vertex_count);
     if (result == GX_OK)
         result = gxp_reserve(a, &s->facets, sizeof *s->facets, s->facet_count, &s->facet_capacity, own->facet_count);
+    if (result == GX_OK)
+        result = gxp_reserve(a, &s->edges, sizeof *s->edges, s->edge_count, &s->edge_capacity, own->edge_count);
     if (result == GX_OK) result = gxp_words_room(all, &s->guesses, own->vertex_count);
     if (result == GX_OK) result = gxp_words_room(all, &s->names, own->vertex_count);
     if (result == GX_OK) result = gxp_words_room(all, &s->places, own->vertex_count);
@@ -21739,6 +22023,11 @@ static gx_result gxp_join_surface(gx_body *all, const gxp_member *m, uint32_t me
         f->element += elements;
         f->fragment += m->first_fragment;
     }
+    for (i = 0; i < own->edge_count; i++) {
+        gxp_touch_edge *edge = &s->edges[s->edge_count++];
+        *edge = own->edges[i];
+        for (k = 0; k < 2; k++) edge->facet[k] += m->first_facet;
+    }
     for (i = 0; i < own->samples.count; i++) s->samples.data[s->samples.count++] = first + own->samples.data[i];
     for (i = 0; i < own->sides.count; i++) s->sides.data[s->sides.count++] = first + own->sides.data[i];
     for (i = 0; i < own->crowds.count; i++) s->crowds.data[s->crowds.count++] = 2 * samples + own->crowds.data[i];
@@ -21754,7 +22043,7 @@ static gx_result gxp_join_surfaces(gx_group *group) {
     gx_result result = GX_OK;
     group->made = 0;
     all->touch.sought = 0;
-    s->vertex_count = s->facet_count = s->state_count = 0;
+    s->vertex_count = s->facet_count = s->edge_count = s->state_count = 0;
     s->guesses.count = s->names.count = s->places.count = 0;
     s->samples.count = s->sides.count = s->crowds.count = 0;
     s->largest = 0;
@@ -22377,6 +22666,11 @@ GXFEM_API gx_result gx_group_contact_events(gx_group *group, gx_group_contact_ev
 #undef GXP_TOUCH_BEHIND
 #undef GXP_TOUCH_ALIKE
 #undef GXP_TOUCH_COPIES
+#undef GXP_TOUCH_SHARP
+#undef GXP_TOUCH_SKEW
+#undef GXP_TOUCH_ARC
+#undef GXP_TOUCH_CROSS
+#undef GXP_TOUCH_WIDTH
 #undef GXP_TREE_LEAVES
 #undef GXP_TREE_LEAF
 #undef GXP_TREE_MARGIN

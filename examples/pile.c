@@ -90,7 +90,7 @@ int main(int argc, char **argv) {
     pieces = scene_fragments_above(&s, 1e-9);
     scene_check(&s, pieces == (s.small ? small_expected : expected), "pieces: %lu (%lu)", (unsigned long)pieces,
                 (unsigned long)(s.small ? small_expected : expected));
-    touching_check_depths(&s, &on, 0.3, 0.15);
+    touching_check_depths(&s, &on, 0.3, 0.1);
     touching_check_above(&s, &on);
     scene_say(&s, "the last step: %s", s.report.stop == GXS_STOP_ASLEEP ? "asleep" : "awake");
     scene_check_body(&s);

@@ -160,7 +160,8 @@ static void try_plainly(const gx_body *body, const gxp_touch_surface *s, double 
     if (pair.score < best->score) *best = pair;
 }
 
-/* Searches, and again by trying all: every sample has the same facet. Returns how many have one. */
+/* Searches, and again by trying all: every sample has the same facet, and the same edges cross. Returns how many pairs
+   there are. */
 static size_t search_both_ways(gx_body *body, double dt, uint64_t seed) {
     const gx_step_desc given = falling(1);
     gxp_touch_surface *surface;
@@ -180,6 +181,14 @@ static size_t search_both_ways(gx_body *body, double dt, uint64_t seed) {
         CHECK_SEED(memcmp(&best, &body->touch.pairs[met], sizeof best) == 0, seed);
         met++;
     }
+    for (i = 0; i < surface->edge_count; i++)
+        for (f = 0; f < surface->edge_count; f++) {
+            gxp_touch_pair pair = gxp_no_pair(GXB_NONE);
+            if (i == f || !gxp_crosses(body, surface, dt, i, f, &pair)) continue;
+            CHECK_SEED(met < body->touch.found, seed);
+            CHECK_SEED(memcmp(&pair, &body->touch.pairs[met], sizeof pair) == 0, seed);
+            met++;
+        }
     CHECK_SEED(met == body->touch.found, seed);
     gxp_keep_contact(body, &given, surface);
     surface->state_count = 0; /* nothing presses */
@@ -350,7 +359,7 @@ START_TEST(colliders_are_found) {
                     CHECK_SEED(parts > 1, seed);
                     for (i = 0; i < body->touch.found; i++)
                         if (body->touch.pairs[i].sample == pair.sample && body->touch.pairs[i].collider == c &&
-                            memcmp(body->touch.pairs[i].share, share, sizeof share) == 0)
+                            memcmp(body->touch.pairs[i].own, share, sizeof share) == 0)
                             break;
                     CHECK_SEED(i < body->touch.found, seed);
                     met++;
