@@ -14436,11 +14436,11 @@ static int gxp_is_between(const gxp_touch *t, const gxp_touch_edge *edge, const 
     return gxp_dot(part, turn) >= -GXP_TOUCH_ARC * square;
 }
 
-/* Where two lines are nearest: at x + at[0] way, and so on of the second three numbers of either */
-static void gxp_nearest_on_lines(const double x[6], const double way[6], double at[2]) {
-    const double r[3] = {x[3] - x[0], x[4] - x[1], x[5] - x[2]};
-    const double aa = gxp_dot(way, way), ab = gxp_dot(way, way + 3), bb = gxp_dot(way + 3, way + 3);
-    const double ar = gxp_dot(way, r), br = gxp_dot(way + 3, r), det = aa * bb - ab * ab;
+/* Where two lines are nearest: at x[i] + at[i] way[i] */
+static void gxp_nearest_on_lines(double x[2][3], double way[2][3], double at[2]) {
+    const double r[3] = {x[1][0] - x[0][0], x[1][1] - x[0][1], x[1][2] - x[0][2]};
+    const double aa = gxp_dot(way[0], way[0]), ab = gxp_dot(way[0], way[1]), bb = gxp_dot(way[1], way[1]);
+    const double ar = gxp_dot(way[0], r), br = gxp_dot(way[1], r), det = aa * bb - ab * ab;
     at[0] = (ar * bb - ab * br) / det;
     at[1] = (ar * ab - aa * br) / det;
 }
@@ -14487,7 +14487,7 @@ static int gxp_crosses(const gx_body *body, const gxp_touch_surface *s, double d
             x[i][k] = end[i][0][k] + time * end[i][0][3 + k];
             way[i][k] = end[i][1][k] + time * end[i][1][3 + k] - x[i][k];
         }
-    gxp_nearest_on_lines(x[0], way[0], at);
+    gxp_nearest_on_lines(x, way, at);
     share[0] = pair->own;
     share[1] = pair->share;
     memset(pair->rest, 0, sizeof pair->rest);

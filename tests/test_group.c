@@ -65,14 +65,14 @@ static void gather(crowd *c) {
     ck_assert_msg(gx_group_create(c->body, c->count, &c->group, &failure) == GX_OK, "%s", failure.field);
 }
 
-/* A block on another, a little apart */
-static crowd two_blocks(const make_desc *like) {
+/* A block on another, a little apart, over one of its edges or, further along x, two */
+static crowd two_blocks(const make_desc *like, double along) {
     crowd c;
     size_t i;
     memset(&c, 0, sizeof c);
     c.count = 2;
     c.mesh[0] = block_at(3, 3, 0, 0, 0);
-    c.mesh[1] = block_at(2, 2, 0.2, 0.1, 1.02);
+    c.mesh[1] = block_at(2, 2, along, 0.1, 1.02);
     for (i = 0; i < 2; i++) c.body[i] = make_body(&c.mesh[i], like);
     gather(&c);
     return c;
@@ -211,7 +211,7 @@ END_TEST
 /* Two bodies that fall on each other do what one body of both meshes does. Sums round differently. */
 START_TEST(two_are_as_one) {
     const make_desc like = {0, 0.3, NULL, NULL};
-    crowd c = two_blocks(&like);
+    crowd c = two_blocks(&like, 0.4);
     workload both = united(&c.mesh[0], &c.mesh[1]);
     gx_body *one = make_body(&both, &like);
     gx_step_desc steps[2];
@@ -349,7 +349,7 @@ END_TEST
 /* Bodies that collide in space keep the sum of their momenta. They rub by the mean of their coefficients. */
 START_TEST(momentum_stays) {
     const make_desc like = {0, 0.8, NULL, NULL}, other = {0, 0, NULL, NULL};
-    crowd c = two_blocks(&like);
+    crowd c = two_blocks(&like, 0.2);
     gx_step_desc steps[2];
     double before[3], after[3];
     size_t between = 0, j;
@@ -376,7 +376,7 @@ START_TEST(momentum_stays) {
             const gxp_touch_surface *surface = &t->surfaces[0];
             const uint32_t beside = surface->vertices[surface->facets[t->pairs[n].facet].vertex[0]].member;
             const double mean[2] = {0.8, 0};
-            const uint32_t own = surface->vertices[t->pairs[n].sample].member;
+            const uint32_t own = gxp_sample_vertex(surface, t->pairs[n].sample)->member;
             ck_assert_double_eq(c.group->all->attached.pairs[n].friction, (mean[own] + mean[beside]) / 2);
             between += own != beside && t->pairs[n].pressed > 0;
         }
@@ -391,7 +391,7 @@ END_TEST
 /* Saved and read again, or put back to a clone, bodies go on in a new group with the same bits. */
 START_TEST(goes_on_after_saving) {
     const make_desc like = {0, 0.4, NULL, NULL};
-    crowd c = two_blocks(&like), d;
+    crowd c = two_blocks(&like, 0.2), d;
     gx_step_desc steps[2];
     uint64_t state[2];
     int i, n;
@@ -429,7 +429,7 @@ END_TEST
 START_TEST(bodies_sleep) {
     const make_desc like = {0, 0.5, NULL, NULL};
     const gx_collider floor = ground(0.5);
-    crowd c = two_blocks(&like);
+    crowd c = two_blocks(&like, 0.2);
     gx_step_desc steps[2];
     gx_step_report report;
     int n;
@@ -463,7 +463,7 @@ static int none_of_two(void *user, uint32_t fragment, uint32_t other, uint32_t c
 /* Fragments of the second body follow those of the first one. */
 START_TEST(filters_know_all_fragments) {
     const make_desc like = {0, 0.3, NULL, NULL};
-    crowd c = two_blocks(&like);
+    crowd c = two_blocks(&like, 0.2);
     gx_step_desc steps[2];
     uint32_t first = 2;
     gx_motion motions[MOST_PIECES];
@@ -486,7 +486,7 @@ END_TEST
 /* Bodies may be stepped alone, emptied and cut between steps of the group. */
 START_TEST(bodies_go_their_own_way) {
     const make_desc like = {0, 0.3, NULL, NULL};
-    crowd c = two_blocks(&like);
+    crowd c = two_blocks(&like, 0.2);
     workload box = wl_empty();
     gx_step_desc steps[2];
     int n;
@@ -517,7 +517,7 @@ static void expect(gx_result result, gx_result due, const gx_failure *failure, c
 
 START_TEST(refusals) {
     const make_desc like = {0, 0.3, NULL, NULL};
-    crowd c = two_blocks(&like);
+    crowd c = two_blocks(&like, 0.2);
     gx_body *twice[2];
     gx_group *group = NULL;
     gx_group_contact contact;
@@ -588,7 +588,7 @@ START_TEST(without_memory) {
     size_t n, i;
     like.affine_below = _i == 1 ? 1 : 0;
     like.allocator = &scarce;
-    c = two_blocks(&like);
+    c = two_blocks(&like, 0.2);
     gx_group_destroy(c.group);
     c.group = NULL;
     for (n = 0; result != GX_OK; n++) {
@@ -624,7 +624,7 @@ END_TEST
 START_TEST(events_name_bodies) {
     const make_desc like = {0, 0.3, NULL, NULL};
     const gx_collider floor = ground(0.5);
-    crowd c = two_blocks(&like);
+    crowd c = two_blocks(&like, 0.2);
     gx_step_desc steps[2];
     gx_group_contact_event events[16];
     gx_failure f;
@@ -636,7 +636,7 @@ START_TEST(events_name_bodies) {
     steps[0].collider_count = 1;
     ck_assert_int_eq(gx_group_contact_events(c.group, events, 16, &count, NULL), GX_OK);
     ck_assert_uint_eq(count, 0);
-    for (n = 0; n < 60; n++) {
+    for (n = 0; n < 120; n++) {
         (void)step_all(&c, steps);
         ck_assert_int_eq(gx_group_contact_events(c.group, events, 16, &count, NULL), GX_OK);
         for (i = 0; i < count; i++) {
@@ -652,12 +652,12 @@ START_TEST(events_name_bodies) {
             }
             ck_assert(e->body == 0 && e->other_body == 1 && e->event.other == 1);
             began += e->event.change == GX_CONTACT_BEGAN;
-            sum = e->event.force[2];
+            sum += n < 60 ? 0 : e->event.force[2] / 60;
         }
     }
     ck_assert_uint_ge(began, 1);
     ck_assert_uint_gt(with_floor, 10);
-    ck_assert_msg(fabs(sum + 9.81 * 1000) < 1500, "%g N on the lower one", sum);
+    ck_assert_msg(fabs(sum + 9.81 * 1000) < 500, "%g N on the lower one", sum);
     expect(gx_group_contact_events(NULL, events, 16, &count, &f), GX_ERROR_ARGUMENT, &f, "group", SIZE_MAX);
     expect(gx_group_contact_events(c.group, NULL, 16, &count, &f), GX_ERROR_ARGUMENT, &f, "events", SIZE_MAX);
     expect(gx_group_contact_events(c.group, events, 16, NULL, &f), GX_ERROR_ARGUMENT, &f, "count", SIZE_MAX);
@@ -693,7 +693,7 @@ START_TEST(threads_do_not_matter) {
         jobs.user = i == 3 ? (void *)&order : (void *)&threads;
         if (i == 1 || i == 2) pool_open(&threads, (size_t)i + 1);
         if (i > 0) like.jobs = &jobs;
-        c = two_blocks(&like);
+        c = two_blocks(&like, 0.2);
         hold_low(c.body[0], 0.1);
         describe_steps(PLAIN, steps, 2);
         for (n = 0; n < 20; n++) {
