@@ -198,10 +198,13 @@ class Body:
         _call(native.gx_body_carve, self._body, ctypes.byref(_surface(tool, native.GX_SURFACE_SOLID, keep)), ctypes.byref(report))
         return _numbers(report)
 
-    def step(self, dt, **desc):
-        """A time step. Further arguments: members of gx_step_desc: gravity, integrator, newton_iterations; forces and targets are
-        arrays of three numbers for each copy. Returns the report's numbers."""
-        made, report, keep = native.gx_step_desc(dt=dt), native.gx_step_report(), []
+    def contact(self, on=True, **desc):
+        """lets the pieces press on each other in later steps, or not. Further arguments: members of gx_contact_desc, as friction"""
+        _call(native.gx_body_contact, self._body, ctypes.byref(native.gx_contact_desc(**desc)) if on else None)
+
+    def _step_desc(self, keep, desc):
+        """a gx_step_desc; keep: a list that holds what it points to"""
+        made = native.gx_step_desc()
         for name, value in desc.items():
             if name in ('forces', 'targets'):
                 value = _array(value, numpy.float64, 3)
@@ -211,7 +214,13 @@ class Body:
                 made.epoch = self.view().epoch
                 value = _doubles(value)
             _set(made, name, value)
-        _call(native.gx_body_step, self._body, ctypes.byref(made), ctypes.byref(report))
+        return made
+
+    def step(self, dt, **desc):
+        """A time step. Further arguments: members of gx_step_desc: gravity, integrator, newton_iterations; forces and targets are
+        arrays of three numbers for each copy. Returns the report's numbers."""
+        report, keep = native.gx_step_report(), []
+        _call(native.gx_body_step, self._body, ctypes.byref(self._step_desc(keep, {'dt': dt, **desc})), ctypes.byref(report))
         return _numbers(report)
 
     def view(self):
@@ -269,6 +278,39 @@ class Body:
 
     def topology_hash(self):
         return native.gx_body_topology_hash(self._body, None)
+
+
+class Group:
+    """Bodies that touch each other, in steps of all of them. Each has contact on, and may be cut, drawn and saved as if alone."""
+
+    def __init__(self, *bodies):
+        self._bodies = bodies
+        self._group = ctypes.POINTER(native.gx_group)()
+        pointers = (ctypes.POINTER(native.gx_body) * len(bodies))(*(body._body for body in bodies))
+        _call(native.gx_group_create, pointers, len(bodies), ctypes.byref(self._group))
+
+    def __del__(self):
+        if getattr(self, '_group', None):
+            native.gx_group_destroy(self._group)
+            self._group = None
+
+    def step(self, dt, loads=(), **desc):
+        """A time step of all. Further arguments: as of Body.step, for all. loads: for each body, in order, a dictionary of what acts
+        on it, as forces. Returns the report's numbers."""
+        report, keep = native.gx_step_report(), []
+        own = [dict(load) for load in loads] + [{}] * (len(self._bodies) - len(loads))
+        own[0] = {'dt': dt, **desc, **own[0]}
+        steps = (native.gx_step_desc * len(own))(*(body._step_desc(keep, load) for body, load in zip(self._bodies, own)))
+        _call(native.gx_group_step, self._group, steps, ctypes.byref(report))
+        return _numbers(report)
+
+    def contacts(self):
+        """where bodies, or pieces of one, pressed on each other in the last step: a list of gx_group_contact"""
+        count, failure = ctypes.c_size_t(), native.gx_failure()
+        native.gx_group_contacts(self._group, None, 0, ctypes.byref(count), ctypes.byref(failure))
+        found = (native.gx_group_contact * max(1, count.value))()
+        _call(native.gx_group_contacts, self._group, found, count, ctypes.byref(count))
+        return list(found[:count.value])
 
 
 class Blade:

@@ -107,6 +107,25 @@ class Tests(unittest.TestCase):
         with self.assertRaises(ValueError):
             body.step(.01, forces=np.zeros((7, 3)))
 
+    def test_bodies_touch(self):
+        lower, upper = self.body(young=1e6), self.body(young=1e6)
+        upper.view().displacement[:] = (0.1, 0.1, 1.02)
+        lower.hold(gxfem.half_space(2, -1, .1))
+        for body in (lower, upper):
+            body.contact(friction=.5)
+        group = gxfem.Group(lower, upper)
+        pushed = np.zeros((upper.view().copy_count, 3))
+        for _ in range(40):
+            group.step(1 / 60, loads=({}, {'forces': pushed}), gravity=(0, 0, -9.81))
+        self.assertGreater(upper.motions()[0].center[2], 1.2)
+        self.assertEqual({(c.body, c.other_body) for c in group.contacts()}, {(0, 1), (1, 0)})
+        lower.cut(SHEET)
+        with self.assertRaises(gxfem.Error):
+            group.contacts()
+        lower.contact(False)
+        with self.assertRaises(gxfem.Error):
+            group.step(1 / 60)
+
     def test_blade(self):
         body = self.body()
         blade = body.blade()
