@@ -14,13 +14,13 @@ typedef struct crowd {
     gx_group *group;
 } crowd;
 
-typedef struct make_desc { /* of a body's kind */
+typedef struct body_like { /* of a body's kind */
     double affine_below, friction;
     const gx_allocator *allocator;
     const gx_jobs *jobs;
-} make_desc;
+} body_like;
 
-static gx_body *make_body(const workload *w, const make_desc *like) {
+static gx_body *create_body(const workload *w, const body_like *like) {
     gx_body_desc desc = desc_of(w);
     gx_contact_desc contact;
     gx_body *made = NULL;
@@ -66,14 +66,14 @@ static void gather(crowd *c) {
 }
 
 /* A block on another, a little apart, over one of its edges or, further along x, two */
-static crowd two_blocks(const make_desc *like, double along) {
+static crowd two_blocks(const body_like *like, double along) {
     crowd c;
     size_t i;
     memset(&c, 0, sizeof c);
     c.count = 2;
     c.mesh[0] = block_at(3, 3, 0, 0, 0);
     c.mesh[1] = block_at(2, 2, along, 0.1, 1.02);
-    for (i = 0; i < 2; i++) c.body[i] = make_body(&c.mesh[i], like);
+    for (i = 0; i < 2; i++) c.body[i] = create_body(&c.mesh[i], like);
     gather(&c);
     return c;
 }
@@ -165,7 +165,7 @@ static void describe_steps(int kind, gx_step_desc *steps, size_t count) {
 
 /* A group of one does what its body does alone, to the bit. */
 START_TEST(one_is_as_alone) {
-    const make_desc like = {_i == AFFINE ? 1 : 0, 0.3, NULL, NULL};
+    const body_like like = {_i == AFFINE ? 1 : 0, 0.3, NULL, NULL};
     const gx_collider floor = ground(0.4);
     crowd c;
     gx_body *alone;
@@ -175,8 +175,8 @@ START_TEST(one_is_as_alone) {
     memset(&c, 0, sizeof c);
     c.count = 1;
     c.mesh[0] = block_at(2, 2, 0, 0, 0.03);
-    c.body[0] = make_body(&c.mesh[0], &like);
-    alone = make_body(&c.mesh[0], &like);
+    c.body[0] = create_body(&c.mesh[0], &like);
+    alone = create_body(&c.mesh[0], &like);
     for (i = 0; i < 2; i++) cut_across(i ? alone : c.body[0], 2, _i == AFFINE ? 0.55 : 0.77);
     gather(&c);
     describe_steps(_i, &step, 1);
@@ -210,10 +210,10 @@ END_TEST
 
 /* Two bodies that fall on each other do what one body of both meshes does. Sums round differently. */
 START_TEST(two_are_as_one) {
-    const make_desc like = {0, 0.3, NULL, NULL};
+    const body_like like = {0, 0.3, NULL, NULL};
     crowd c = two_blocks(&like, 0.4);
     workload both = united(&c.mesh[0], &c.mesh[1]);
-    gx_body *one = make_body(&both, &like);
+    gx_body *one = create_body(&both, &like);
     gx_step_desc steps[2];
     gx_group_contact contacts[400];
     size_t count, between = 0, j;
@@ -301,7 +301,7 @@ static void act_on(gx_body *body, loads *l, gx_step_desc *step) {
 }
 
 START_TEST(loads_are_the_bodies_own) {
-    const make_desc like = {_i ? 1 : 0, 0.3, NULL, NULL}, plain = {0, 0, NULL, NULL};
+    const body_like like = {_i ? 1 : 0, 0.3, NULL, NULL}, plain = {0, 0, NULL, NULL};
     const gx_region root = gx_region_half_space(0, -1, 5.1);
     gx_body *alone;
     crowd c;
@@ -313,9 +313,9 @@ START_TEST(loads_are_the_bodies_own) {
     c.count = 2;
     c.mesh[0] = block_at(3, 2, 0, 0, 0);
     c.mesh[1] = block_at(2, 1, 5, 0, 0);
-    c.body[0] = make_body(&c.mesh[0], &plain);
-    c.body[1] = make_body(&c.mesh[1], &like);
-    alone = make_body(&c.mesh[1], &like);
+    c.body[0] = create_body(&c.mesh[0], &plain);
+    c.body[1] = create_body(&c.mesh[1], &like);
+    alone = create_body(&c.mesh[1], &like);
     cut_across(alone, 2, 0.4);
     cut_across(c.body[1], 2, 0.4);
     ck_assert_int_eq(gx_body_hold(alone, &root, 1, NULL), GX_OK);
@@ -348,7 +348,7 @@ END_TEST
 
 /* Bodies that collide in space keep the sum of their momenta. They rub by the mean of their coefficients. */
 START_TEST(momentum_stays) {
-    const make_desc like = {0, 0.8, NULL, NULL}, other = {0, 0, NULL, NULL};
+    const body_like like = {0, 0.8, NULL, NULL}, other = {0, 0, NULL, NULL};
     crowd c = two_blocks(&like, 0.2);
     gx_step_desc steps[2];
     double before[3], after[3];
@@ -357,7 +357,7 @@ START_TEST(momentum_stays) {
     int i, k;
     gx_group_destroy(c.group);
     gx_body_destroy(c.body[1]);
-    c.body[1] = make_body(&c.mesh[1], &other);
+    c.body[1] = create_body(&c.mesh[1], &other);
     gather(&c);
     describe_steps(PLAIN, steps, 2);
     for (i = 0; i < 2; i++) {
@@ -390,7 +390,7 @@ END_TEST
 
 /* Saved and read again, or put back to a clone, bodies go on in a new group with the same bits. */
 START_TEST(goes_on_after_saving) {
-    const make_desc like = {0, 0.4, NULL, NULL};
+    const body_like like = {0, 0.4, NULL, NULL};
     crowd c = two_blocks(&like, 0.2), d;
     gx_step_desc steps[2];
     uint64_t state[2];
@@ -427,7 +427,7 @@ END_TEST
 
 /* A heap falls asleep, and wakes where it is touched or cut. */
 START_TEST(bodies_sleep) {
-    const make_desc like = {0, 0.5, NULL, NULL};
+    const body_like like = {0, 0.5, NULL, NULL};
     const gx_collider floor = ground(0.5);
     crowd c = two_blocks(&like, 0.2);
     gx_step_desc steps[2];
@@ -462,7 +462,7 @@ static int none_of_two(void *user, uint32_t fragment, uint32_t other, uint32_t c
 
 /* Fragments of the second body follow those of the first one. */
 START_TEST(filters_know_all_fragments) {
-    const make_desc like = {0, 0.3, NULL, NULL};
+    const body_like like = {0, 0.3, NULL, NULL};
     crowd c = two_blocks(&like, 0.2);
     gx_step_desc steps[2];
     uint32_t first = 2;
@@ -485,7 +485,7 @@ END_TEST
 
 /* Bodies may be stepped alone, emptied and cut between steps of the group. */
 START_TEST(bodies_go_their_own_way) {
-    const make_desc like = {0, 0.3, NULL, NULL};
+    const body_like like = {0, 0.3, NULL, NULL};
     crowd c = two_blocks(&like, 0.2);
     workload box = wl_empty();
     gx_step_desc steps[2];
@@ -516,7 +516,7 @@ static void expect(gx_result result, gx_result due, const gx_failure *failure, c
 }
 
 START_TEST(refusals) {
-    const make_desc like = {0, 0.3, NULL, NULL};
+    const body_like like = {0, 0.3, NULL, NULL};
     crowd c = two_blocks(&like, 0.2);
     gx_body *twice[2];
     gx_group *group = NULL;
@@ -581,7 +581,7 @@ END_TEST
 START_TEST(without_memory) {
     memory m = plenty();
     const gx_allocator scarce = allocator_of(&m);
-    make_desc like = {0, 0.3, NULL, NULL};
+    body_like like = {0, 0.3, NULL, NULL};
     crowd c;
     gx_step_desc steps[2];
     gx_result result = GX_ERROR_MEMORY;
@@ -622,7 +622,7 @@ END_TEST
 
 /* Events name bodies and fragments, as they begin, go on and end. */
 START_TEST(events_name_bodies) {
-    const make_desc like = {0, 0.3, NULL, NULL};
+    const body_like like = {0, 0.3, NULL, NULL};
     const gx_collider floor = ground(0.5);
     crowd c = two_blocks(&like, 0.2);
     gx_step_desc steps[2];
@@ -686,7 +686,7 @@ START_TEST(threads_do_not_matter) {
     for (i = 0; i < 4; i++) {
         pool threads;
         gx_jobs jobs;
-        make_desc like = {0, 0.3, NULL, NULL};
+        body_like like = {0, 0.3, NULL, NULL};
         crowd c;
         gx_step_desc steps[2];
         jobs.parallel_for = i == 3 ? shuffled_for : pool_for;

@@ -938,6 +938,7 @@ int main(void) {
     tcase_add_test(tc, ground_after_cuts);
     tcase_add_test(tc, contact);
     tcase_add_test(tc, contact_with_ball);
+    tcase_add_test(tc, one_body_on_another);
     tcase_add_test(tc, threads);
     tcase_add_test(tc, undo_and_save);
     tcase_add_loop_test(tc, integrator, 0, 3);
