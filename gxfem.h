@@ -9478,11 +9478,31 @@ static gx_result gxp_make_parts(gx_body *body, gx_failure *failure) {
     return result;
 }
 
+/* Gives the affine copies of hidden.copies their hidden vectors: which are whose, which are held */
+static gx_result gxp_place_hidden(gx_body *body) {
+    gxp_hidden *hidden = &body->hidden;
+    const uint32_t n = body->copies.count;
+    uint32_t i, k;
+    gx_result result = gxp_start_words(body, &hidden->first, gxp_vector_count(body));
+    if (result == GX_OK)
+        result =
+            gxp_reserve(&body->config.allocator, &hidden->held, 1, 0, &hidden->held_capacity, gxp_vector_count(body));
+    if (result != GX_OK || hidden->copies.count == 0) return result;
+    hidden->first.count = (uint32_t)gxp_vector_count(body);
+    memset(hidden->first.data, 0xff, hidden->first.count * sizeof *hidden->first.data);
+    memcpy(hidden->held, body->copies.held, n);
+    for (i = 0; i < hidden->copies.count; i++) {
+        hidden->first.data[hidden->copies.data[i]] = n + 3 * i;
+        for (k = 0; k < 3; k++) hidden->held[n + 3 * i + k] = body->copies.held[hidden->copies.data[i]];
+    }
+    return GX_OK;
+}
+
 /* Affine copies and constraints */
 static gx_result gxp_make_affine(gx_body *body) {
     gxp_hidden *hidden = &body->hidden;
     const uint32_t n = body->copies.count;
-    uint32_t i, k;
+    uint32_t i;
     gx_result result;
     hidden->copies.count = hidden->first.count = 0;
     if (!body->copies.bends) return gxp_make_constraints(body);
@@ -9492,20 +9512,9 @@ static gx_result gxp_make_affine(gx_body *body) {
     result = gxp_make_constraints(body);
     for (i = 0; i < n && result == GX_OK; i++)
         if (body->copies.affine[i] && !hidden->plain[i]) result = gxp_push(body, &hidden->copies, i);
-    if (result == GX_OK) result = gxp_start_words(body, &hidden->first, gxp_vector_count(body));
-    if (result == GX_OK)
-        result =
-            gxp_reserve(&body->config.allocator, &hidden->held, 1, 0, &hidden->held_capacity, gxp_vector_count(body));
+    if (result == GX_OK) result = gxp_place_hidden(body);
     if (result != GX_OK) hidden->copies.count = 0;
-    if (hidden->copies.count == 0) return result;
-    hidden->first.count = (uint32_t)gxp_vector_count(body);
-    memset(hidden->first.data, 0xff, hidden->first.count * sizeof *hidden->first.data);
-    memcpy(hidden->held, body->copies.held, n);
-    for (i = 0; i < hidden->copies.count; i++) {
-        hidden->first.data[hidden->copies.data[i]] = n + 3 * i;
-        for (k = 0; k < 3; k++) hidden->held[n + 3 * i + k] = body->copies.held[hidden->copies.data[i]];
-    }
-    return GX_OK;
+    return result;
 }
 
 /* The whole model. Its arrays are the body's. */
@@ -21749,7 +21758,7 @@ GXFEM_API gx_result gx_body_restore(gx_body *body, gx_body *from, gx_failure *fa
 typedef struct gxp_member { /* a body; where its own begin among those of all members */
     gx_body *body;
     gxp_touch_surface *surface;  /* of a step: its own */
-    uint64_t modelled, surfaced; /* hashes of its cuts: when the model, when the surface of all was made */
+    uint64_t modelled, surfaced; /* gxp_model_hash: when the model, when the surface of all was made */
     uint32_t copies, hidden;     /* how many it has in the model: copies, affine ones with hidden vectors */
     uint32_t vertices, facets;   /* how many it has in the surface */
     int wakes;                   /* in the next step */
@@ -21790,12 +21799,30 @@ static double gxp_hidden_scale(const gx_group *group, const gxp_member *m) {
     return m->hidden > 0 ? group->all->mesh.affine_length / m->body->mesh.affine_length : 1;
 }
 
+/* Hash of what a body's elements and surface of contact are made of: its cuts and its materials, which a restore may
+   change */
+static uint64_t gxp_model_hash(const gx_body *body) {
+    uint64_t hash = body->cuts.hash;
+    uint32_t i;
+    for (i = 0; i < body->mesh.material_count; i++) {
+        const gx_material *m = &body->mesh.materials[i];
+        const double numbers[4] = {m->elastic.young, m->elastic.poisson, m->elastic.damping, m->density};
+        uint32_t words[1 + (sizeof m->elastic.energy + sizeof m->elastic.user) / sizeof(uint32_t)];
+        words[0] = (uint32_t)m->elastic.kind;
+        memcpy(words + 1, &m->elastic.energy, sizeof m->elastic.energy);
+        memcpy((char *)(words + 1) + sizeof m->elastic.energy, &m->elastic.user, sizeof m->elastic.user);
+        hash = gxp_hash_doubles(gxp_hash_words(hash, words, sizeof words / sizeof *words), numbers, 4);
+    }
+    return hash;
+}
+
 /* Is the member in the model as it is now? Its held copies are up to date. */
 static int gxp_is_modelled(const gx_group *group, const gxp_member *m) {
     const gx_body *all = group->all, *body = m->body;
     const uint32_t *affine = body->hidden.copies.data;
     uint32_t i;
-    if (m->modelled != body->cuts.hash || m->copies != body->copies.count || m->hidden != body->hidden.copies.count)
+    if (m->modelled != gxp_model_hash(body) || m->copies != body->copies.count ||
+        m->hidden != body->hidden.copies.count)
         return 0;
     if (m->hidden > 0 && body->hidden.first.count != gxp_vector_count(body)) return 0;
     for (i = 0; i < m->hidden; i++)
@@ -21821,8 +21848,8 @@ static gx_result gxp_start_joint(gx_group *group) {
     gx_result result;
     for (i = 0; i < group->count; i++) {
         gxp_member *m = &group->members[i];
-        m->wakes |= group->known &&
-                    (m->modelled != m->body->cuts.hash || m->copies != m->body->copies.count || gxp_is_moved(group, m));
+        m->wakes |= group->known && (m->modelled != gxp_model_hash(m->body) || m->copies != m->body->copies.count ||
+                                     gxp_is_moved(group, m));
         copies += m->body->copies.count;
         affine |= m->body->copies.affine != NULL;
     }
@@ -21893,37 +21920,23 @@ static gx_result gxp_join_model(gx_group *group, gxp_member *m, const gxs_model 
     m->hidden = affine->count;
     for (i = 0; i < affine->count; i++) all->hidden.copies.data[all->hidden.copies.count++] = first + affine->data[i];
     all->copies.bends |= m->body->copies.bends;
-    m->modelled = m->body->cuts.hash;
+    m->modelled = gxp_model_hash(m->body);
     return GX_OK;
 }
 
-/* Lists the hidden vectors of all members: their places at rest, which of them are held. */
+/* Lists the hidden vectors of all members, which are at rest where their copies are. */
 static gx_result gxp_join_hidden(gx_group *group) {
     gx_body *all = group->all;
-    gxp_hidden *hidden = &all->hidden;
-    const uint32_t n = all->copies.count;
-    const size_t vectors = gxp_vector_count(all);
-    uint32_t i, k;
-    gx_result result = gxp_start_words(all, &hidden->first, vectors);
-    if (result == GX_OK)
-        result = gxp_reserve(&all->config.allocator, &hidden->held, 1, 0, &hidden->held_capacity, vectors);
+    const size_t n = all->copies.count, vectors = gxp_vector_count(all);
+    size_t i;
+    gx_result result = gxp_place_hidden(all);
     if (result == GX_OK)
         result = gxp_reserve(&all->config.allocator, &all->mesh.positions, 3 * sizeof(double), n,
                              &all->mesh.node_capacity[0], vectors - n);
-    if (result != GX_OK || hidden->copies.count == 0) return result;
-    hidden->first.count = (uint32_t)vectors;
-    memset(hidden->first.data, 0xff, vectors * sizeof *hidden->first.data);
-    memcpy(hidden->held, all->copies.held, n);
-    for (i = 0; i < hidden->copies.count; i++) {
-        const uint32_t copy = hidden->copies.data[i];
-        hidden->first.data[copy] = n + 3 * i;
-        for (k = 0; k < 3; k++) {
-            hidden->held[n + 3 * i + k] = all->copies.held[copy];
-            memcpy(all->mesh.positions + 3 * ((size_t)n + 3 * i + k), all->mesh.positions + 3 * (size_t)copy,
-                   3 * sizeof(double));
-        }
-    }
-    return GX_OK;
+    for (i = n; i < vectors && result == GX_OK; i++)
+        memcpy(all->mesh.positions + 3 * i, all->mesh.positions + 3 * (size_t)all->hidden.copies.data[(i - n) / 3],
+               3 * sizeof(double));
+    return result;
 }
 
 /* Tells the solver what all members are made of. */
@@ -22055,7 +22068,7 @@ static gx_result gxp_join_surfaces(gx_group *group) {
         m->first_fragment = fragments;
         m->vertices = m->surface->vertex_count;
         m->facets = m->surface->facet_count;
-        m->surfaced = m->body->cuts.hash;
+        m->surfaced = gxp_model_hash(m->body);
         if (result == GX_OK) result = gxp_join_surface(all, m, i, elements);
         elements += m->body->mesh.element_count;
         fragments += m->body->view.fragment_count;
@@ -22088,7 +22101,7 @@ static gx_result gxp_update_surfaces(gx_group *group) {
     for (i = 0; i < group->count && result == GX_OK; i++) {
         gxp_member *m = &group->members[i];
         result = gxp_step_surface(m->body, &m->surface);
-        known = known && m->surfaced == m->body->cuts.hash;
+        known = known && m->surfaced == gxp_model_hash(m->body);
     }
     if (result == GX_OK && !known) result = gxp_join_surfaces(group);
     group->all->touch.surfaces[0].state_count = 0;
@@ -22519,7 +22532,7 @@ GXFEM_API gx_result gx_group_step(gx_group *group, const gx_step_desc *steps, gx
 static gx_result gxp_check_surfaced(const gx_group *group, gx_failure *failure) {
     uint32_t i;
     for (i = 0; i < group->count && group->all->touch.kept > 0; i++)
-        if (group->members[i].surfaced != group->members[i].body->cuts.hash)
+        if (group->members[i].surfaced != gxp_model_hash(group->members[i].body))
             return gxp_blame_member(failure, i, gxp_fail(failure, GX_ERROR_SEQUENCE, "gx_group_step", SIZE_MAX));
     return GX_OK;
 }

@@ -508,6 +508,38 @@ START_TEST(bodies_go_their_own_way) {
 }
 END_TEST
 
+/* A body that becomes another one of other materials has them in the next step. */
+START_TEST(materials_come_with_a_restore) {
+    const body_like like = {0, 0.3, NULL, NULL};
+    crowd c = two_blocks(&like, 0.2), d;
+    gx_body_desc desc = desc_of(&c.mesh[1]);
+    gx_contact_desc contact;
+    gx_body *soft = NULL;
+    gx_step_desc steps[2];
+    int n;
+    memset(&contact, 0, sizeof contact);
+    desc.young = 2e4;
+    ck_assert_int_eq(gx_body_create(&desc, &soft, NULL), GX_OK);
+    ck_assert_int_eq(gx_body_contact(soft, &contact, NULL), GX_OK);
+    hold_low(c.body[0], 0.1);
+    describe_steps(PLAIN, steps, 2);
+    for (n = 0; n < 5; n++) (void)step_all(&c, steps);
+    ck_assert_int_eq(gx_body_restore(c.body[1], soft, NULL), GX_OK);
+    memset(&d, 0, sizeof d);
+    d.count = 2;
+    for (n = 0; n < 2; n++) ck_assert_int_eq(gx_body_clone(c.body[n], &d.body[n], NULL), GX_OK);
+    gather(&d);
+    for (n = 0; n < 20; n++) {
+        (void)step_all(&c, steps);
+        (void)step_all(&d, steps);
+    }
+    ck_assert_msg(apart(c.body, 2, d.body, 2) < 1e-5, "%g m apart", apart(c.body, 2, d.body, 2));
+    gx_body_destroy(soft);
+    let_go(&c);
+    let_go(&d);
+}
+END_TEST
+
 static void expect(gx_result result, gx_result due, const gx_failure *failure, const char *field, size_t surface) {
     ck_assert_int_eq(result, due);
     ck_assert_int_eq(failure->result, due);
@@ -720,6 +752,7 @@ static Suite *suite(void) {
     tcase_add_test(tests, bodies_sleep);
     tcase_add_test(tests, filters_know_all_fragments);
     tcase_add_test(tests, bodies_go_their_own_way);
+    tcase_add_test(tests, materials_come_with_a_restore);
     tcase_add_test(tests, events_name_bodies);
     tcase_add_test(tests, threads_do_not_matter);
     tcase_add_test(tests, refusals);
