@@ -1768,6 +1768,7 @@ typedef struct gxp_touch {
     uint32_t sought;         /* the last search was for surfaces[sought - 1]; 0: for none of these, or it failed */
     double sought_dt;        /* s: that search's */
     gxp_words stirred;       /* of each vertex since: GXP_TOUCH_MOVED, _TURNED */
+    gxp_words met;           /* names of vertices that meet a facet, as a set */
     uint32_t given;          /* pairs of the caller, which stand first */
     gxp_touch_event *events; /* of a call */
     uint32_t event_capacity;
@@ -2097,7 +2098,7 @@ static const gxp_column gxp_lists[] = {
     GXP_WORDS(touch.surfaces[0].places), GXP_WORDS(touch.surfaces[1].places),
     GXP_WORDS(touch.surfaces[0].crowds), GXP_WORDS(touch.surfaces[1].crowds),
     GXP_WORDS(touch.crowd),               GXP_WORDS(touch.near), GXP_WORDS(touch.kept_leaves),
-    GXP_WORDS(touch.stirred),
+    GXP_WORDS(touch.stirred), GXP_WORDS(touch.met),
     GXP_LIST(touch.known, touch.known_capacity, sizeof(gxp_touch_known)),
     GXP_LIST(touch.pairs, touch.pair_capacity, sizeof(gxp_touch_pair)),
     GXP_LIST(touch.moved, touch.moved_capacity, 9 * sizeof(double)),
@@ -13568,25 +13569,18 @@ static int gxp_facet_moves(const gxp_touch *t, const gxp_touch_facet *f) {
             GXP_TOUCH_MOVED) != 0;
 }
 
-/* What the affine rate of a copy adds to the velocity of a material point along an axis; 0 where it has none */
-static double gxp_affine_speed(const gx_body *body, uint32_t copy, const double rest[3], int axis) {
-    const double *x = body->mesh.positions + 3 * (size_t)body->copies.node[copy];
-    double speed = 0;
-    int j;
-    for (j = 0; j < 3 && body->copies.affine != NULL && body->copies.affine[copy]; j++)
-        speed += body->copies.linear_rate[9 * (size_t)copy + 3 * (size_t)j + (size_t)axis] * (rest[j] - x[j]);
-    return speed;
-}
-
 /* Position and velocity of a vertex: x */
 static void gxp_move_vertex(const gx_body *body, const gxp_touch_vertex *v, double x[6]) {
-    int n, k;
+    uint32_t n;
+    int k;
     gxp_map_point(body, v->rest, v->copies, v->weights, 4, x);
     for (k = 3; k < 6; k++) x[k] = 0;
-    for (n = 0; n < 4 && v->weights[n] > 0; n++)
-        for (k = 0; k < 3; k++)
-            x[3 + k] += v->weights[n] * (body->copies.velocity[3 * (size_t)v->copies[n] + (size_t)k] +
-                                         gxp_affine_speed(body, v->copies[n], v->rest, k));
+    for (n = 0; n < 4 && v->weights[n] > 0; n++) {
+        const double *velocity = body->copies.velocity + 3 * (size_t)v->copies[n];
+        for (k = 0; k < 3; k++) x[3 + k] += v->weights[n] * velocity[k];
+        if (body->copies.bends && body->copies.affine[v->copies[n]])
+            gxp_add_linear(body, body->copies.linear_rate, v->copies[n], v->weights[n], v->rest, x + 3);
+    }
 }
 
 /* Measures places from a vertex, unless it is still near where it was when this was done. anew: it must be done.
@@ -13631,12 +13625,12 @@ static void gxp_place_vertices(gx_body *body, const gxp_touch_surface *s, double
 /* Twice the area of a facet along its normal, in space. 0: its corners are in a line but for rounding. So it has no
    normal, and meets nothing: those beside it do. */
 static int gxp_space_normal(const gxp_touch *t, const gxp_touch_facet *f, double n_area[3]) {
-    static const uint32_t corner[3] = {0, 1, 2};
-    double x[9], longest = 0;
-    int n;
-    for (n = 0; n < 3; n++) memcpy(x + 3 * n, t->moved + 9 * (size_t)f->vertex[n], 3 * sizeof *x);
-    gxp_triangle_normal(x, corner, n_area);
-    for (n = 0; n < 3; n++) longest = fmax(longest, gxp_square_distance(x + 3 * n, x + 3 * ((n + 1) % 3)));
+    const double *x = t->moved + 9 * (size_t)f->vertex[0], *y = t->moved + 9 * (size_t)f->vertex[1],
+                 *z = t->moved + 9 * (size_t)f->vertex[2];
+    const double a[3] = {y[0] - x[0], y[1] - x[1], y[2] - x[2]}, b[3] = {z[0] - x[0], z[1] - x[1], z[2] - x[2]};
+    const double one = gxp_dot(a, a), two = gxp_square_distance(y, z), three = gxp_dot(b, b);
+    const double most = GXP_MOST(two, three), longest = GXP_MOST(one, most);
+    gxp_cross(n_area, a, b);
     return gxp_size(n_area) > GXP_TOUCH_THIN * longest;
 }
 
@@ -13816,10 +13810,13 @@ typedef int32_t gxp_lane_flags;
 #endif
 #define GXP_EACH_LANE(j) for (j = 0; j < 4; j += GXP_LANES)
 
-/* Of each two the lesser and the greater one: SSE's own instructions, since gcc does not find them */
+/* Of each two the lesser and the greater one: the instructions of SSE and of WebAssembly, since compilers do not find
+   them */
 static inline gxp_lane gxp_lane_least(gxp_lane a, gxp_lane b) {
 #if GXP_LANES == 4 && defined(__SSE2_MATH__)
     return (gxp_lane)__builtin_ia32_minps((gxp_lane_own)a, (gxp_lane_own)b);
+#elif GXP_LANES == 4 && defined(__wasm_simd128__)
+    return (gxp_lane)__builtin_wasm_pmin_f32x4((gxp_lane_own)a, (gxp_lane_own)b);
 #else
     const gxp_lane_flags above = GXP_ABOVE(a, b);
     return GXP_PICK(above, b, a);
@@ -13828,6 +13825,8 @@ static inline gxp_lane gxp_lane_least(gxp_lane a, gxp_lane b) {
 static inline gxp_lane gxp_lane_most(gxp_lane a, gxp_lane b) {
 #if GXP_LANES == 4 && defined(__SSE2_MATH__)
     return (gxp_lane)__builtin_ia32_maxps((gxp_lane_own)a, (gxp_lane_own)b);
+#elif GXP_LANES == 4 && defined(__wasm_simd128__)
+    return (gxp_lane)__builtin_wasm_pmax_f32x4((gxp_lane_own)b, (gxp_lane_own)a);
 #else
     const gxp_lane_flags above = GXP_ABOVE(a, b);
     return GXP_PICK(above, a, b);
@@ -13942,17 +13941,21 @@ static void gxp_fit_leaf(const gxp_touch *t, const gxp_touch_surface *s, uint32_
 /* Fits the box of a leaf to its facets: those from `first` to end - 1. */
 static void gxp_fit_box(const gxp_touch *t, const gxp_touch_surface *s, uint32_t first, uint32_t end,
                         gxp_touch_box *box) {
+    gxp_touch_box own; /* in registers */
     uint32_t i;
     int n;
+    gxp_empty_box(&own);
     for (i = first; i < end; i++) {
-        gxp_add_to_span(t->facing + 4 * (size_t)i, t->facing + 4 * (size_t)i, &box->normals);
+        gxp_add_to_span(t->facing + 4 * (size_t)i, t->facing + 4 * (size_t)i, &own.normals);
         for (n = 0; n < 3; n++) {
             const gxp_touch_place *x = &t->places[s->facets[i].vertex[n]];
-            gxp_add_to_span(x->from, x->from, &box->from);
-            gxp_add_to_span(x->to, x->to, &box->to);
+            gxp_add_to_span(x->from, x->from, &own.from);
+            gxp_add_to_span(x->to, x->to, &own.to);
         }
     }
-    gxp_widen_box(box);
+    gxp_widen_box(&own);
+    own.stirred = box->stirred;
+    *box = own;
 }
 
 /* Fits the boxes to the facets. anew: none of them is fitted; else those in which nothing is stirred stay. */
@@ -14199,6 +14202,7 @@ static uint32_t gxp_keep_leaves(const gxp_touch *t, const gxp_touch_place *x, co
         GXP_FLAGS(far) = GXP_ABOVE(GXP_LANE(side), to[0]) | GXP_ABOVE(from[0], GXP_LANE(side + 3 * n)) |
                          GXP_ABOVE(GXP_LANE(side + n), to[1]) | GXP_ABOVE(from[1], GXP_LANE(side + 4 * n)) |
                          GXP_ABOVE(GXP_LANE(side + 2 * n), to[2]) | GXP_ABOVE(from[2], GXP_LANE(side + 5 * n));
+        if ((far[0] & far[1] & far[2] & far[3]) != 0) continue;
         for (j = 0; j < 4 && i + j < t->near.count; j++) { /* what is not a number is not far from anything */
             kept[count] = (uint32_t)(i + j);
             count += (uint32_t)(far[j] == 0);
@@ -14727,34 +14731,63 @@ static gx_result gxp_list_crossing(gx_body *body, const gxp_touch_surface *s, do
                                                                             : GX_OK;
 }
 
-/* Lists the pairs of all samples. */
+/* Lists the names of the vertices that meet a facet, as a set: touch.met. */
+static gx_result gxp_list_met(gx_body *body, const gxp_touch_surface *s) {
+    gxp_words *met = &body->touch.met;
+    uint32_t i;
+    gx_result result;
+    met->count = 0;
+    result = gxp_extend_words(body, met, s->vertex_count / 32 + 1);
+    for (i = 0; i < s->samples.count && result == GX_OK; i++)
+        if (s->guesses.data[s->samples.data[i]] != GXP_NONE) {
+            const uint32_t name = s->names.data[s->samples.data[i]];
+            met->data[name / 32] |= 1u << (name & 31);
+        }
+    return result;
+}
+
+/* Lists the pairs of all samples, in the order of their names. */
+static gx_result gxp_list_pairs(gx_body *body, const gxp_touch_surface *s, double dt, gx_failure *failure) {
+    gxp_touch *t = &body->touch;
+    uint32_t next = 0, at = 0, cross = 0, met = gxp_next_of_set(&t->met, 0);
+    gx_result result = GX_OK;
+    while (result == GX_OK) {
+        const uint32_t beside = next < t->order.count ? GXP_FIRST(t->order.data[next]) : GXP_NONE;
+        const uint32_t state = at < s->state_count ? s->states[at].sample : GXP_NONE;
+        const uint32_t edge = cross < t->crossing.count
+                                ? s->vertex_count + s->edges[GXP_FIRST(t->crossing.data[cross])].facet[0]
+                                : GXP_NONE;
+        const uint32_t first = beside < state ? beside : state, second = met < edge ? met : edge;
+        const uint32_t name = first < second ? first : second;
+        if (name == GXP_NONE) break;
+        if (met == name) {
+            gxp_touch_pair pair = gxp_no_pair(gxp_named_sample(s, name));
+            pair.facet = s->guesses.data[pair.sample];
+            (void)gxp_meets(body, s, dt, &pair); /* as it was found */
+            result = gxp_list_pair(body, s, &pair, failure);
+            met = gxp_next_of_set(&t->met, met + 1);
+        }
+        while (cross < t->crossing.count && result == GX_OK &&
+               name == s->vertex_count + s->edges[GXP_FIRST(t->crossing.data[cross])].facet[0])
+            result = gxp_list_crossing(body, s, dt, t->crossing.data[cross++], failure);
+        if (result == GX_OK && first == name)
+            result = gxp_seek_colliders(body, s, dt, gxp_named_sample(s, name), &next, failure);
+        while (at < s->state_count && s->states[at].sample == name) at++;
+    }
+    return result;
+}
+
+/* Finds the pairs of all samples. */
 static gx_result gxp_seek_pairs(gx_body *body, const gxp_touch_surface *s, double dt, int anew, gx_failure *failure) {
     gxp_touch *t = &body->touch;
     gx_result result = gxp_list_all_beside(body, s, dt, failure);
-    uint32_t i, next = 0, at = 0, cross = 0;
     t->found = 0;
     if (result == GX_OK) result = gxp_end(failure, gxp_seek_facets(body, s, dt));
+    if (result == GX_OK) result = gxp_end(failure, gxp_list_met(body, s));
     if (result == GX_OK) result = gxp_end(failure, gxp_seek_crossing(body, s, dt, anew));
     if (result == GX_OK && t->filter == NULL) t->sought = s == &t->surfaces[0] ? 1 : 2;
     t->sought_dt = dt;
-    for (i = 0; i < s->vertex_count + s->facet_count && result == GX_OK && s->facet_count > 0; i++) {
-        const uint32_t sample = gxp_named_sample(s, i);
-        if (i >= s->vertex_count && next == t->order.count && at == s->state_count && cross == t->crossing.count) break;
-        if (i < s->vertex_count && s->guesses.data[sample] != GXP_NONE) {
-            gxp_touch_pair pair = gxp_no_pair(sample);
-            pair.facet = s->guesses.data[sample];
-            (void)gxp_meets(body, s, dt, &pair); /* as it was found */
-            result = gxp_list_pair(body, s, &pair, failure);
-        }
-        while (cross < t->crossing.count && result == GX_OK &&
-               i == s->vertex_count + s->edges[GXP_FIRST(t->crossing.data[cross])].facet[0])
-            result = gxp_list_crossing(body, s, dt, t->crossing.data[cross++], failure);
-        while (at < s->state_count && s->states[at].sample < i) at++;
-        if (result == GX_OK && ((next < t->order.count && GXP_FIRST(t->order.data[next]) == i) ||
-                                (at < s->state_count && s->states[at].sample == i)))
-            result = gxp_seek_colliders(body, s, dt, sample, &next, failure);
-    }
-    return result;
+    return result == GX_OK && s->facet_count > 0 ? gxp_list_pairs(body, s, dt, failure) : result;
 }
 
 /* >>pressing: what pairs do ---------------------------------------------------------------------------------------- */

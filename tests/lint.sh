@@ -223,7 +223,7 @@ rule_prefixes() {
 provided='__cplusplus|__SIZEOF_INT128__|__extension__|__int128|__GNUC__|__clang__|_MSC_VER|__restrict|_Pragma|__attribute__|__declspec|__forceinline|__pragma'
 provided="$provided|__asm__|__clang_major__|__SSE2_MATH__|__AVX__|__aarch64__|__arm__|__ARM_FP|__riscv_flen|__s390x__"
 provided="$provided|__powerpc64__|__wasm__|__wasm_simd128__|__builtin_shufflevector|__builtin_convertvector"
-provided="$provided|__builtin_prefetch|__builtin_fabs|__builtin_ia32_m(in|ax)ps|_M_X64|_M_ARM64|__SSE2__|__m64|__m128d?|_mm_[a-z0-9_]+"
+provided="$provided|__builtin_prefetch|__builtin_fabs|__builtin_ia32_m(in|ax)ps|__builtin_wasm_pm(in|ax)_f32x4|_M_X64|_M_ARM64|__SSE2__|__m64|__m128d?|_mm_[a-z0-9_]+"
 provided="$provided|_MM_SHUFFLE|_MM_HINT_T0|_umul128|__umulh"
 rule_reserved() {
     for header in $headers; do
